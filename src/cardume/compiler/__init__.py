@@ -1,0 +1,44 @@
+"""The only place that knows Numba: what the rest of the package needs to write compiled code."""
+
+from cardume.compiler.compiled import compiled, entry, source_stamp
+from cardume.compiler.lanes import (
+    WIDTH,
+    floor,
+    negate,
+    scale2,
+    some,
+    split2,
+    sqrt,
+    to_bits,
+    to_float,
+    where,
+)
+from cardume.compiler.records import Layout
+from cardume.compiler.rows import Rows, SharedRows, as_mask, as_real, at, gather, load, rows_of, scatter, store
+
+__all__ = [
+    "WIDTH",
+    "Layout",
+    "Rows",
+    "SharedRows",
+    "as_mask",
+    "as_real",
+    "at",
+    "compiled",
+    "entry",
+    "floor",
+    "gather",
+    "load",
+    "negate",
+    "rows_of",
+    "scale2",
+    "scatter",
+    "some",
+    "source_stamp",
+    "split2",
+    "sqrt",
+    "store",
+    "to_bits",
+    "to_float",
+    "where",
+]

@@ -1,0 +1,104 @@
+"""How a plain Python function becomes compiled code, and a cache on disk that cannot be stale.
+
+`compiled` leaves the function as it is, plain Python that a debugger can step through, and tells
+Numba to use the same source wherever compiled code calls it, for whatever number type it is given.
+`entry` makes one of the few functions that Python calls into compiled code; only these, and the
+laws of `calls.py`, are kept on disk.  Numba's own key covers just the file that a function stands
+in, so both carry a hash of every source of the compute layers in their name: an edit anywhere in
+them is a new name.
+"""
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from numba import config, njit
+from numba.extending import overload
+
+OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+COMPUTE_LAYERS = (
+    "compiler",
+    "maths",
+    "laws.py",
+    "signals.py",
+    "paths",
+    "vehicles",
+    "onboard",
+    "world",
+    "simulation",
+)
+F = TypeVar("F", bound=Callable[..., Any])
+_registered: set[Callable[..., Any]] = set()
+
+
+def compiled(function: F) -> F:
+    """Let compiled code call this function; return it unchanged.
+
+    Args:
+        function: plain scalar Python, positional arguments only.
+
+    Returns:
+        The same function.
+    """
+
+    # A new code object for each number type: Numba compiles `function` itself, inlined where it pays.
+    @overload(function, strict=False, jit_options=OPTIONS)
+    def specialized(*arguments: Any) -> Callable[..., Any]:
+        return function
+
+    _registered.add(function)
+    return function
+
+
+def is_compiled(function: object) -> bool:
+    """Whether compiled code can call this function as it is."""
+    return function in _registered
+
+
+def entry(function: F) -> F:
+    """Compile a function that Python calls, kept on disk under a name that carries the source stamp.
+
+    Args:
+        function: its arguments are arrays, numbers and records.
+
+    Returns:
+        The compiled function; plain Python when NUMBA_DISABLE_JIT is set.
+    """
+    function.__qualname__ += f"_{source_stamp()}"
+    return cached(function)
+
+
+def cached(function: Any, signature: Any = None, keep: bool = True) -> Any:
+    """Compile with the cache on disk, or without one where no folder can be written.
+
+    Args:
+        function: a function whose name says what it is made of.
+        signature: Numba types of the arguments and the result; None compiles at the first call.
+        keep: False leaves the cache alone (Numba aborts when it reloads recursive code).
+
+    Returns:
+        Numba's dispatcher.
+    """
+    if config.DISABLE_JIT:
+        return function
+    try:
+        return njit(signature, cache=keep, **OPTIONS)(function)
+    except RuntimeError as problem:
+        if "cannot cache" not in str(problem):
+            raise
+        return njit(signature, **OPTIONS)(function)
+
+
+@cache
+def source_stamp() -> str:
+    """Hash of every source file of the compute layers (the command line is not among them)."""
+    package = Path(__file__).parent.parent
+    digest = hashlib.blake2s(digest_size=6)
+    for layer in COMPUTE_LAYERS:
+        place = package / layer
+        for file in sorted(place.rglob("*.py")) if place.is_dir() else [place]:
+            digest.update(file.relative_to(package).as_posix().encode())
+            digest.update(file.read_bytes())
+    return digest.hexdigest()

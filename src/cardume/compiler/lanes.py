@@ -1,0 +1,379 @@
+"""Lanes: one number that holds eight missions, a SIMD register of float64.
+
+The same scalar source compiles for float64 and for `Lanes`: arithmetic and comparisons are
+overloaded here, a comparison gives a `Mask`, and `where` chooses by lane.  Nothing is left to an
+auto-vectorizer.  No fast-math: each lane gets the bits that the scalar code would compute.
+"""
+
+import math
+import operator
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic, models, overload, register_model
+
+WIDTH = 8
+
+DOUBLE, INT64, INT32 = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
+DOUBLES = ir.VectorType(DOUBLE, WIDTH)
+BOOLS = ir.VectorType(ir.IntType(1), WIDTH)
+WORDS = ir.VectorType(INT64, WIDTH)
+
+
+class LanesType(types.Type):
+    """Numba type of eight float64."""
+
+    def __init__(self) -> None:
+        super().__init__(name=f"Lanes{WIDTH}")
+
+
+class MaskType(types.Type):
+    """Numba type of eight truth values."""
+
+    def __init__(self) -> None:
+        super().__init__(name=f"Mask{WIDTH}")
+
+
+class LaneBitsType(types.Type):
+    """Numba type of eight unsigned 64-bit words, for random numbers."""
+
+    def __init__(self) -> None:
+        super().__init__(name=f"Bits{WIDTH}")
+
+
+LANES, MASK, LANE_BITS = LanesType(), MaskType(), LaneBitsType()
+
+
+def _register(kind: type[types.Type], vector: ir.VectorType) -> None:
+    @register_model(kind)
+    class _Model(models.PrimitiveModel):  # type: ignore[misc]
+        def __init__(self, manager: Any, fe_type: Any) -> None:
+            super().__init__(manager, fe_type, vector)
+
+
+_register(LanesType, DOUBLES)
+_register(MaskType, BOOLS)
+_register(LaneBitsType, WORDS)
+
+
+def is_number(kind: object) -> bool:
+    """Whether a Numba type is an ordinary scalar number."""
+    return isinstance(kind, (types.Float, types.Integer))
+
+
+def spread(builder: Any, value: Any, vector: ir.VectorType) -> Any:
+    """LLVM code that puts one value in every lane."""
+    undefined = ir.Constant(vector, ir.Undefined)
+    first = builder.insert_element(undefined, value, ir.Constant(INT32, 0))
+    return builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(INT32, WIDTH), [0] * WIDTH))
+
+
+def _binary_intrinsic(generate: Callable[..., Any], left: Any, right: Any, result: Any) -> Any:
+    @intrinsic
+    def operation(context: Any, x: Any, y: Any) -> Any:
+        return result(left, right), lambda c, b, s, arguments: generate(b, *arguments)
+
+    return operation
+
+
+def _unary_intrinsic(generate: Callable[..., Any], argument: Any, result: Any) -> Any:
+    @intrinsic
+    def operation(context: Any, x: Any) -> Any:
+        return result(argument), lambda c, b, s, arguments: generate(b, arguments[0])
+
+    return operation
+
+
+splat = _unary_intrinsic(lambda b, x: spread(b, x, DOUBLES), types.float64, LANES)
+splat_bits = _unary_intrinsic(lambda b, x: spread(b, x, WORDS), types.uint64, LANE_BITS)
+
+
+def _overload_lanes(python_operator: Any, operation: Any) -> None:
+    @overload(python_operator, strict=False)
+    def choose(a: Any, b: Any) -> Any:
+        if a is LANES and b is LANES:
+            return lambda a, b: operation(a, b)
+        if a is LANES and is_number(b):
+            return lambda a, b: operation(a, splat(float(b)))
+        if is_number(a) and b is LANES:
+            return lambda a, b: operation(splat(float(a)), b)
+        return None
+
+
+for _python, _llvm in (
+    (operator.add, "fadd"),
+    (operator.sub, "fsub"),
+    (operator.mul, "fmul"),
+    (operator.truediv, "fdiv"),
+):
+    _overload_lanes(
+        _python, _binary_intrinsic(lambda b, x, y, m=_llvm: getattr(b, m)(x, y), LANES, LANES, LANES)
+    )
+for _python, _llvm in (
+    (operator.lt, "<"),
+    (operator.le, "<="),
+    (operator.gt, ">"),
+    (operator.ge, ">="),
+    (operator.eq, "=="),
+):
+    _overload_lanes(
+        _python, _binary_intrinsic(lambda b, x, y, m=_llvm: b.fcmp_ordered(m, x, y), LANES, LANES, MASK)
+    )
+# NaN != NaN must hold, as in scalar code: an unordered comparison.
+_overload_lanes(
+    operator.ne, _binary_intrinsic(lambda b, x, y: b.fcmp_unordered("!=", x, y), LANES, LANES, MASK)
+)
+
+
+def _overload_bits(python_operator: Any, method: str) -> None:
+    operation = _binary_intrinsic(lambda b, x, y: getattr(b, method)(x, y), LANE_BITS, LANE_BITS, LANE_BITS)
+
+    @overload(python_operator, strict=False)
+    def choose(a: Any, b: Any) -> Any:
+        if a is LANE_BITS and b is LANE_BITS:
+            return lambda a, b: operation(a, b)
+        if a is LANE_BITS and is_number(b):
+            return lambda a, b: operation(a, splat_bits(np.uint64(b)))
+        if is_number(a) and b is LANE_BITS:
+            return lambda a, b: operation(splat_bits(np.uint64(a)), b)
+        return None
+
+
+for _python, _llvm in (
+    (operator.add, "add"),
+    (operator.mul, "mul"),
+    (operator.xor, "xor"),
+    (operator.and_, "and_"),
+    (operator.or_, "or_"),
+    (operator.rshift, "lshr"),
+    (operator.lshift, "shl"),
+):
+    _overload_bits(_python, _llvm)
+
+_both = _binary_intrinsic(lambda b, x, y: b.and_(x, y), MASK, MASK, MASK)
+_either = _binary_intrinsic(lambda b, x, y: b.or_(x, y), MASK, MASK, MASK)
+_spread_truth = _unary_intrinsic(lambda b, x: spread(b, x, BOOLS), types.boolean, MASK)
+
+
+def _overload_mask(python_operator: Any, operation: Any) -> None:
+    @overload(python_operator, strict=False)
+    def choose(a: Any, b: Any) -> Any:
+        if a is MASK and b is MASK:
+            return lambda a, b: operation(a, b)
+        if a is MASK and isinstance(b, types.Boolean):
+            return lambda a, b: operation(a, _spread_truth(b))
+        if isinstance(a, types.Boolean) and b is MASK:
+            return lambda a, b: operation(_spread_truth(a), b)
+        return None
+
+
+_overload_mask(operator.and_, _both)
+_overload_mask(operator.or_, _either)
+_minus = _unary_intrinsic(lambda b, x: b.fneg(x), LANES, LANES)
+
+
+@overload(operator.neg, strict=False)
+def _negative(a: Any) -> Any:
+    return (lambda a: _minus(a)) if a is LANES else None
+
+
+def _llvm_call(name: str) -> Any:
+    def generate(b: Any, x: Any) -> Any:
+        kind = ir.FunctionType(DOUBLES, [DOUBLES])
+        function = cgutils.get_or_insert_function(b.module, kind, f"llvm.{name}.v{WIDTH}f64")
+        return b.call(function, [x])
+
+    return _unary_intrinsic(generate, LANES, LANES)
+
+
+_lane_sqrt, _lane_floor, _lane_abs = _llvm_call("sqrt"), _llvm_call("floor"), _llvm_call("fabs")
+
+
+@overload(abs, strict=False)
+def _absolute(x: Any) -> Any:
+    return (lambda x: _lane_abs(x)) if x is LANES else None
+
+
+def sqrt(x: float) -> float:
+    """Square root; NaN below zero.  The processor's own, correctly rounded everywhere."""
+    return math.sqrt(x) if x >= 0.0 else math.nan
+
+
+@overload(sqrt, strict=False)
+def _sqrt(x: Any) -> Any:
+    return (lambda x: _lane_sqrt(x)) if x is LANES else (lambda x: np.sqrt(x))
+
+
+def floor(x: float) -> float:
+    """The largest whole number not above x, as a float; NaN and infinities pass through."""
+    return float(np.floor(x))
+
+
+@overload(floor, strict=False)
+def _floor(x: Any) -> Any:
+    return (lambda x: _lane_floor(x)) if x is LANES else (lambda x: np.floor(x))
+
+
+@intrinsic
+def _select(context: Any, mask: Any, x: Any, y: Any) -> Any:
+    return LANES(MASK, LANES, LANES), lambda c, b, s, arguments: b.select(*arguments)
+
+
+def where(condition: bool, chosen: Any, otherwise: Any) -> Any:
+    """`chosen` where the condition holds, else `otherwise`: numbers, or equal records field by field.
+
+    Args:
+        condition: [-] a truth value, or a mask of lanes.
+        chosen: [any] a number or record.
+        otherwise: [any] the same kind.
+
+    Returns:
+        A value of that kind; both sides are computed, so neither may have an effect.
+    """
+    return chosen if condition else otherwise
+
+
+@overload(where, strict=False)
+def _where(condition: Any, chosen: Any, otherwise: Any) -> Any:
+    if isinstance(chosen, types.BaseNamedTuple):
+        return _where_record(chosen)
+    if isinstance(condition, MaskType):
+        if chosen is LANES and otherwise is LANES:
+            return lambda condition, chosen, otherwise: _select(condition, chosen, otherwise)
+        if chosen is LANES:
+            return lambda condition, chosen, otherwise: _select(condition, chosen, splat(float(otherwise)))
+        if otherwise is LANES:
+            return lambda condition, chosen, otherwise: _select(condition, splat(float(chosen)), otherwise)
+        return lambda condition, chosen, otherwise: _select(
+            condition, splat(float(chosen)), splat(float(otherwise))
+        )
+    return lambda condition, chosen, otherwise: chosen if condition else otherwise
+
+
+def _where_record(record: Any) -> Any:
+    """`where` field by field; rows (tables) are the same in both and pass through."""
+    numeric = [k is LANES or is_number(k) for k in record.types]
+    parts = [
+        f"where(condition, chosen.{f}, otherwise.{f})" if n else f"chosen.{f}"
+        for f, n in zip(record.fields, numeric, strict=True)
+    ]
+    scope = {"where": where, "Record": record.instance_class}
+    exec(f"def choose(condition, chosen, otherwise): return Record({', '.join(parts)})", scope)
+    return scope["choose"]
+
+
+_invert = _unary_intrinsic(lambda b, x: b.not_(x), MASK, MASK)
+
+
+def negate(condition: bool) -> bool:
+    """True where the condition does not hold."""
+    return not condition
+
+
+@overload(negate, strict=False)
+def _negate(condition: Any) -> Any:
+    return (lambda condition: _invert(condition)) if condition is MASK else (lambda condition: not condition)
+
+
+def _any_lane(b: Any, mask: Any) -> Any:
+    packed = b.bitcast(mask, ir.IntType(WIDTH))
+    return b.icmp_unsigned("!=", packed, ir.Constant(ir.IntType(WIDTH), 0))
+
+
+_some = _unary_intrinsic(_any_lane, MASK, types.boolean)
+
+
+def some(condition: bool) -> bool:
+    """Whether the condition holds in any lane: the one thing an `if` may ask of a signal."""
+    return condition
+
+
+@overload(some, strict=False)
+def _some_lane(condition: Any) -> Any:
+    return (lambda condition: _some(condition)) if condition is MASK else (lambda condition: condition)
+
+
+def _constant(kind: Any, value: int) -> Any:
+    return ir.Constant(kind, [value] * WIDTH) if isinstance(kind, ir.VectorType) else ir.Constant(kind, value)
+
+
+def _bit_shapes(x: Any) -> tuple[Any, Any, Any]:
+    return (LANES, DOUBLES, WORDS) if x is LANES else (types.float64, DOUBLE, INT64)
+
+
+@intrinsic
+def _power_of_two(context: Any, k: Any) -> Any:
+    number, floats, words = _bit_shapes(k)
+
+    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
+        exponent = b.add(b.fptosi(arguments[0], words), _constant(words, 1023))
+        return b.bitcast(b.shl(exponent, _constant(words, 52)), floats)
+
+    return number(number), generate
+
+
+def scale2(x: float, k: float) -> float:
+    """x times 2 to the k, for whole k in [-1022, 1023]."""
+    return x * math.ldexp(1.0, int(k)) if k == k else math.nan
+
+
+@overload(scale2, strict=False)
+def _scale2(x: Any, k: Any) -> Any:
+    return lambda x, k: x * _power_of_two(k)
+
+
+_HALF_ROOT = 0x3FE6A09E667F3BCD  # bits of 1 / sqrt(2)
+
+
+@intrinsic
+def _split(context: Any, x: Any) -> Any:
+    number, floats, words = _bit_shapes(x)
+
+    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
+        bits = b.add(b.bitcast(arguments[0], words), _constant(words, 0x3FF0000000000000 - _HALF_ROOT))
+        exponent = b.sub(b.lshr(bits, _constant(words, 52)), _constant(words, 1023))
+        mantissa = b.add(b.and_(bits, _constant(words, 0x000FFFFFFFFFFFFF)), _constant(words, _HALF_ROOT))
+        return c.make_tuple(b, s.return_type, (b.sitofp(exponent, floats), b.bitcast(mantissa, floats)))
+
+    return types.UniTuple(number, 2)(number), generate
+
+
+def split2(x: float) -> tuple[float, float]:
+    """(k, m) with x = m 2^k and m in [1/sqrt(2), sqrt(2)); x normal and > 0, else both are meaningless."""
+    if not 0.0 < x < math.inf:
+        return 0.0, 1.0
+    m, k = math.frexp(x)
+    return (k - 1.0, 2.0 * m) if m < 0.7071067811865476 else (float(k), m)
+
+
+@overload(split2, strict=False)
+def _split2(x: Any) -> Any:
+    return lambda x: _split(x)
+
+
+_lanes_to_bits = _unary_intrinsic(lambda b, x: b.fptoui(x, WORDS), LANES, LANE_BITS)
+_lanes_from_bits = _unary_intrinsic(lambda b, x: b.uitofp(x, DOUBLES), LANE_BITS, LANES)
+
+
+def to_bits(x: float) -> np.uint64:
+    """A whole number 0 <= x < 2^53 as an unsigned word."""
+    return np.uint64(int(x))
+
+
+@overload(to_bits, strict=False)
+def _to_bits(x: Any) -> Any:
+    return (lambda x: _lanes_to_bits(x)) if x is LANES else (lambda x: np.uint64(x))
+
+
+def to_float(bits: np.uint64) -> float:
+    """A word below 2^53 as a float, exactly."""
+    return float(bits)
+
+
+@overload(to_float, strict=False)
+def _to_float(bits: Any) -> Any:
+    return (lambda bits: _lanes_from_bits(bits)) if bits is LANE_BITS else (lambda bits: np.float64(bits))

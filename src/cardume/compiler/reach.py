@@ -1,0 +1,89 @@
+"""What a user's law reaches: its helpers are compiled with it, and its name in the cache covers them all."""
+
+import hashlib
+from collections.abc import Callable
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+from numba import config, njit
+
+from cardume.compiler.compiled import OPTIONS, is_compiled
+
+
+def _helpers(function: FunctionType) -> dict[str, FunctionType]:
+    """Plain Python functions that the body names and that compiled code cannot call yet."""
+    found = {}
+    for name in function.__code__.co_names:
+        value = function.__globals__.get(name)
+        if isinstance(value, FunctionType) and not is_compiled(value):
+            found[name] = value
+    return found
+
+
+def is_recursive(function: Any, above: tuple[Any, ...] = ()) -> bool:
+    """Whether a function reaches itself: Numba aborts the process when it reloads such code from disk."""
+    if function in above:
+        return True
+    return any(is_recursive(helper, (*above, function)) for helper in _helpers(function).values())
+
+
+def with_compiled_helpers(function: Any, done: dict[Any, Any] | None = None) -> Any:
+    """A compiled twin of a plain function and, through it, of every plain helper that it calls."""
+    done = {} if done is None else done
+    if config.DISABLE_JIT or is_compiled(function):
+        return function
+    if function not in done:
+        twin = FunctionType(
+            function.__code__,
+            dict(function.__globals__),
+            function.__name__,
+            function.__defaults__,
+            function.__closure__,
+        )
+        twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
+        done[function] = njit(**OPTIONS)(twin)
+        twin.__globals__.update({n: with_compiled_helpers(h, done) for n, h in _helpers(function).items()})
+    return done[function]
+
+
+def fingerprint(function: Callable[..., Any]) -> str:
+    """Hash of the bytecode and constants of a function and of everything it reaches by name."""
+    digest = hashlib.blake2s(digest_size=8)
+    seen: set[Any] = set()
+
+    def add(value: Any, scope: dict[str, Any]) -> None:
+        value = getattr(value, "py_func", value)
+        if isinstance(value, CodeType):
+            _add_code(value, scope)
+        elif isinstance(value, FunctionType):
+            if value not in seen and not value.__module__.startswith("cardume."):
+                seen.add(value)
+                add(value.__code__, value.__globals__)
+                for cell in value.__closure__ or ():
+                    add(cell.cell_contents, value.__globals__)
+                add(value.__defaults__, value.__globals__)
+        elif isinstance(value, np.ndarray):
+            digest.update(value.tobytes())
+        elif isinstance(value, type) and hasattr(value, "_fields"):
+            digest.update(repr((value._fields, value._field_defaults)).encode())
+        elif isinstance(value, tuple):
+            for part in value:
+                add(part, scope)
+        elif isinstance(value, (bool, int, float, str)):
+            digest.update(repr(value).encode())
+
+    def _add_code(code: CodeType, scope: dict[str, Any]) -> None:
+        digest.update(code.co_code)
+        modules = [scope[n] for n in code.co_names if isinstance(scope.get(n), ModuleType)]
+        for name in code.co_names:
+            digest.update(name.encode())
+            add(scope.get(name), scope)
+            for module in modules:  # helpers.turn: the attribute stands in the names too
+                add(vars(module).get(name), vars(module))
+                modules += [v for v in [vars(module).get(name)] if isinstance(v, ModuleType) and v not in modules]
+        for constant in code.co_consts:
+            add(constant, scope)
+
+    add(function, {})
+    return digest.hexdigest()

@@ -1,0 +1,511 @@
+"""How a plain function becomes a law.
+
+A law is a plain scalar Python function with named parameters, marked by the decorator of its
+family.  Its signature is the only definition: it says which signals the law gets (by annotation),
+whether it has a memory (a `NamedTuple` argument that is not a signal), and which parameters a
+mission file may set, with unit, default and bounds.  Compiled code calls it by address.
+"""
+
+import importlib
+import inspect
+import math
+import typing
+from collections.abc import Callable, Iterable
+from types import MappingProxyType
+from typing import Annotated, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from cardume.compiler import Rows, SharedRows, as_real, at, compiled, load, store
+from cardume.compiler.calls import address, law_signature, make_jump, record_type
+from cardume.compiler.compiled import cached, source_stamp
+from cardume.compiler.reach import fingerprint, is_recursive, with_compiled_helpers
+
+
+class Unit(NamedTuple):
+    """The unit of a parameter, as the mission file spells it."""
+
+    symbol: str
+
+
+class Bounds(NamedTuple):
+    """Closed bounds of a parameter, unless an end is marked open."""
+
+    low: float = -math.inf
+    high: float = math.inf
+    low_open: bool = False
+    high_open: bool = False
+
+
+class Length(NamedTuple):
+    """How many numbers a memory field of rows holds."""
+
+    size: int
+
+
+Number = Annotated[float, Unit("")]
+Meters = Annotated[float, Unit("m")]
+Radians = Annotated[float, Unit("rad")]
+RadiansPerSecond = Annotated[float, Unit("rad/s")]
+Seconds = Annotated[float, Unit("s")]
+MetersPerSecond = Annotated[float, Unit("m/s")]
+PerSecond = Annotated[float, Unit("1/s")]
+PerSecondSquared = Annotated[float, Unit("1/s^2")]
+Kilograms = Annotated[float, Unit("kg")]
+Newtons = Annotated[float, Unit("N")]
+NewtonMeters = Annotated[float, Unit("N m")]
+
+T = TypeVar("T")
+Positive = Annotated[T, Bounds(0.0, math.inf, low_open=True)]
+NotNegative = Annotated[T, Bounds(0.0)]
+Probability = Annotated[float, Unit(""), Bounds(0.0, 1.0)]
+
+
+class Parameter(NamedTuple):
+    """What a mission file may set in a law."""
+
+    name: str
+    default: float
+    unit: str = ""
+    low: float = -math.inf
+    high: float = math.inf
+    low_open: bool = False
+    high_open: bool = False
+
+    def accepts(self, value: float) -> bool:
+        """Whether a value lies within the bounds."""
+        above = value > self.low if self.low_open else value >= self.low
+        below = value < self.high if self.high_open else value <= self.high
+        return above and below
+
+
+class LawError(Exception):
+    """A function that cannot be a law of its family; the text names both and says what is required."""
+
+
+class LawBook(NamedTuple):
+    """Whom to call and with what, for one vehicle: its handles, gains and memories."""
+
+    handles: Any  # Ints (family, 4): handle, first gain, first memory row, memory width
+    gains: Rows
+    memory: Rows
+    dt: float  # [s] one tick
+
+
+HANDLE, GAINS, MEMORY, WIDTH, COLUMNS = 0, 1, 2, 3, 4  # columns of LawBook.handles
+
+# Every family has its place in the table, whatever is imported first.  The order is the table's layout.
+FAMILIES = (
+    "guidance",
+    "reference_point",
+    "compensation",
+    "current_observer",
+    "position",
+    "neighbors",
+    "coordination",
+    "messaging",
+    "speed",
+    "autopilot",
+    "model",
+    "current",
+    "acoustics",
+    "gnss",
+    "ahrs",
+    "depth",
+    "usbl",
+    "dvl",
+    "thruster_speed",
+)
+_families: dict[str, "Family"] = {}
+
+
+class Family:
+    """A kind of law: what all its members receive and return, and the verb that calls them."""
+
+    def __init__(self, name: str, signals: tuple[Any, ...], result: Any) -> None:
+        self.name, self.signals, self.result = name, signals, result
+        self.place = FAMILIES.index(name)
+        self.laws: dict[str, Law] = {}
+        self.jump = make_jump(signals, result)
+        _families[name] = self
+
+    def decorator(self, **common: float) -> Any:
+        """The decorator that makes a function a law; `common` are parameters the engine itself reads."""
+
+        def make(function: Callable[..., Any]) -> Law:
+            law = Law(self, function, common)
+            if law.is_builtin:
+                self.laws[law.name] = law
+            return law
+
+        return make
+
+    def verb(self) -> Callable[..., Any]:
+        """A compiled function (book, slot, *signals) -> result; the slot chooses among several memories."""
+        names = [f"signal_{k}" for k in range(len(self.signals))]
+        packed = ", ".join(_widened(name, kind) for name, kind in zip(names, self.signals, strict=True))
+        first = self.place * COLUMNS
+        source = (
+            f"def call(book, slot, {', '.join(names)}):\n"
+            f"    row = at(book.handles, {first})\n"
+            f"    first = load(row, {MEMORY}) + slot * load(row, {WIDTH})\n"
+            f"    return jump(load(row, {HANDLE}), at(book.gains, load(row, {GAINS})),"
+            f" at(book.memory, first), book.dt, ({packed},))\n"
+        )
+        scope: dict[str, Any] = {"jump": self.jump, "load": load, "at": at, "as_real": as_real}
+        scope |= {k.__name__: k for k in self.signals if k is not float}
+        exec(compile(source, f"<verb of {self.name}>", "exec"), scope)
+        return compiled(scope["call"])
+
+
+def _widened(name: str, kind: Any) -> str:
+    """Source text of a signal whose every number is as wide as the tables are."""
+    if kind is float:
+        return f"as_real(book.gains, {name})"
+    fields = ", ".join(f"as_real(book.gains, {name}.{f})" for f in kind._fields)
+    return f"{kind.__name__}({fields})"
+
+
+def law_family(
+    name: str, signals: tuple[Any, ...], result: Any = float
+) -> tuple[Callable[[Callable[..., Any]], "Law"], Callable[..., Any]]:
+    """Make a family.
+
+    Args:
+        name: [-] one of FAMILIES, the mission key.
+        signals: [-] record classes that its laws may ask for.
+        result: [-] float, a record class or a tuple of them.
+
+    Returns:
+        The decorator for its laws, and the verb by which compiled code calls them.
+    """
+    family = Family(name, signals, result)
+    return family.decorator(), family.verb()
+
+
+def sensor_family(name: str, signals: tuple[Any, ...], result: Any = float) -> tuple[Any, Callable[..., Any]]:
+    """Make a family whose laws also have a period and a latency, which the engine keeps.
+
+    Args:
+        name: [-] one of FAMILIES.
+        signals: [-] record classes that its laws may ask for.
+        result: [-] float or a record class.
+
+    Returns:
+        A decorator called with default period [s] and latency [s], and the verb.
+    """
+    family = Family(name, signals, result)
+
+    def decorator(period: float, latency: float = 0.0) -> Any:
+        return family.decorator(period=period, latency=latency)
+
+    return decorator, family.verb()
+
+
+COMMON = MappingProxyType(
+    {
+        "period": Parameter("period", 0.0, "s", 0.0, math.inf, low_open=True),
+        "latency": Parameter("latency", 0.0, "s", 0.0, 60.0),
+    }
+)
+
+
+class Law:
+    """A function, what its signature says and, once used, the address that compiled code calls."""
+
+    def __init__(self, family: Family, function: Callable[..., Any], common: dict[str, float]) -> None:
+        self.family, self.function, self.name = family.name, function, function.__name__
+        self.common, self._family, self._handles = common, family, {}
+        self.doc = inspect.getdoc(function) or ""
+        self.memory_type: Any = None
+        self.parameters: tuple[Parameter, ...] = ()
+        self._given: list[str] = []
+        self._read_signature()
+        self.__name__, self.__qualname__, self.__doc__ = self.name, function.__qualname__, function.__doc__
+        self.__module__ = function.__module__
+        self._kept: list[Any] = []  # compiled code lives as long as this object
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        return self.function(*arguments, **named)
+
+    def __repr__(self) -> str:
+        return f"<{self.family} law {self.name}>"
+
+    @property
+    def is_builtin(self) -> bool:
+        """Whether cardume ships this law."""
+        return self.function.__module__.split(".")[0] == "cardume"
+
+    def _read_signature(self) -> None:
+        hints = typing.get_type_hints(self.function, include_extras=True)
+        own: list[Parameter] = []
+        for argument in inspect.signature(self.function).parameters.values():
+            hint = hints.get(argument.name, float)
+            if hint in self._family.signals and hint is not float:
+                self._given.append(f"signal_{self._family.signals.index(hint)}")
+            elif argument.name == "dt":
+                self._given.append("dt")
+            elif hasattr(hint, "_fields"):
+                self._accept_memory(hint)
+            elif argument.default is argument.empty:
+                raise LawError(
+                    f"{self.family} law '{self.name}': parameter '{argument.name}' needs a default value, or the"
+                    f" annotation of one of the family's signals: {self._signal_names()}"
+                )
+            else:
+                self._given.append(f"load(gains, {len(own)})")
+                own.append(_parameter(argument.name, argument.default, hint))
+        shared = [COMMON[name]._replace(default=value) for name, value in self.common.items()]
+        self.parameters = (*own, *shared)
+
+    def _accept_memory(self, hint: Any) -> None:
+        if self.memory_type is not None:
+            raise LawError(
+                f"{self.family} law '{self.name}' has two records that are no signals of its family,"
+                f" {self.memory_type.__name__} and {hint.__name__}; signals are {self._signal_names()}, and one memory"
+            )
+        if len(hint._field_defaults) != len(hint._fields):
+            raise LawError(
+                f"{self.family} law '{self.name}': every field of its memory {hint.__name__} needs a default,"
+                f" the value at the start of a mission"
+            )
+        self.memory_type = hint
+        self._given.append("memory")
+
+    def _signal_names(self) -> str:
+        return ", ".join(s.__name__ for s in self._family.signals)
+
+    def gains(self, **named: float) -> np.ndarray:
+        """The row of gains: defaults overridden by name, checked against their bounds.
+
+        Args:
+            named: [any] values of parameters, in the parameter's unit.
+
+        Returns:
+            (number of parameters,) array.
+
+        Raises:
+            LawError: unknown name or a value out of bounds.
+        """
+        known = {p.name: p for p in self.parameters}
+        if unknown := named.keys() - known.keys():
+            raise LawError(f"law '{self.name}' has no parameter {sorted(unknown)}; it has {sorted(known)}")
+        for name, value in named.items():
+            if not known[name].accepts(value):
+                p = known[name]
+                raise LawError(f"law '{self.name}': {name} = {value} {p.unit} is outside {p.low} to {p.high}")
+        return np.array([float(named.get(p.name, p.default)) for p in self.parameters])
+
+    def column(self, parameter: str) -> int:
+        """The place of a parameter in the row of gains."""
+        return [p.name for p in self.parameters].index(parameter)
+
+    def initial_memory(self) -> np.ndarray:
+        """(width,) array of the memory at the start of a mission."""
+        if self.memory_type is None:
+            return np.zeros(0)
+        return np.concatenate([np.ravel(np.asarray(v, float)) for v in self.memory_type()])
+
+    def handle(self, lanes: bool = False) -> int:
+        """Where the compiled law lives in THIS process: never store it, never send it.
+
+        Args:
+            lanes: [-] for the lanes kernel; negative where the law is called once per lane.
+
+        Returns:
+            A machine address.
+
+        Raises:
+            LawError: the law does not compile, or returned the wrong thing when tried.
+        """
+        if lanes not in self._handles:
+            if not self.is_builtin and not self._handles:
+                self._try_once()
+            self._handles[lanes] = self._compile_lanes() if lanes else self._compile(lanes=False)
+        return self._handles[lanes]
+
+    def _compile_lanes(self) -> int:
+        from numba.core.errors import NumbaError  # costs a tenth of a second; only batches need it
+
+        try:
+            return self._compile(lanes=True)
+        except (NumbaError, LawError):
+            return -self.handle()
+
+    def _compile(self, lanes: bool) -> int:
+        from numba.core.errors import NumbaError
+
+        signature = law_signature(self._family.signals, self._family.result, lanes)
+        try:
+            wrapper = cached(self._wrapper(lanes), signature, keep=not is_recursive(self.function))
+        except NumbaError as problem:
+            raise LawError(
+                f"{self.family} law '{self.name}' does not compile: {_last_words(problem)}\n"
+                f"A law is plain scalar Python: numbers, records, `if`, loops, and functions of cardume.maths."
+            ) from problem
+        self._kept.append(wrapper)
+        return address(wrapper, signature)
+
+    def _wrapper(self, lanes: bool) -> Any:
+        """Write law(*signals, gains, memory, dt) around the function, named after what it is made of."""
+        slots, stores, first = [], [], 0
+        for field, start in zip(self.memory_type._fields, self.memory_type(), strict=True) if self.memory_type else ():
+            if np.ndim(start):
+                slots.append(f"at(memory, {first})")
+            else:
+                slots.append(f"load(memory, {first})")
+                stores.append(f"    store(memory, {first}, after.{field})")
+            first += int(np.size(start))
+        given = ", ".join(f"Memory({', '.join(slots)})" if g == "memory" else g for g in self._given)
+        call = f"    answer, after = law({given})" if stores else f"    answer = law({given})"
+        if self.memory_type is not None and not stores:
+            call = f"    answer, after = law({given})"
+        result = self._family.result
+        answer = _widened("answer", result).replace("book.gains", "memory")
+        signals = ", ".join(f"signal_{k}" for k in range(len(self._family.signals)))
+        body = "\n".join([call, *stores, f"    return {answer}"])
+        made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function))
+        name = f"{self.family}_{self.name}_{made_of}_{'lanes' if lanes else 'scalar'}"
+        scope = {"law": with_compiled_helpers(self.function), "Memory": self.memory_type}
+        scope |= {"load": load, "store": store, "at": at, "as_real": as_real}
+        if result is not float:
+            scope[result.__name__] = result
+        exec(compile(f"def {name}({signals}, gains, memory, dt):\n{body}", __file__, "exec"), scope)
+        return scope[name]
+
+    def _try_once(self) -> None:
+        """Call a user's law in Python and look at what it returns, before Numba says it in its own words."""
+        required = f"it must return {_shape(self._family.result)}"
+        if self.memory_type is not None:
+            required += f" and the next {self.memory_type.__name__}, as a pair"
+        try:
+            first, second = self._sample_call(), self._sample_call()
+        except Exception as problem:
+            raise LawError(
+                f"{self.family} law '{self.name}' failed on sample input:"
+                f" {type(problem).__name__}: {problem}; {required}"
+            ) from problem
+        answer = first
+        if self.memory_type is not None:
+            if not (isinstance(first, tuple) and len(first) == 2 and isinstance(first[1], self.memory_type)):
+                raise LawError(f"{self.family} law '{self.name}' returned {first!r}; {required}")
+            answer = first[0]
+        if not _fits(answer, self._family.result):
+            raise LawError(f"{self.family} law '{self.name}' returned {answer!r}; {required}")
+        if not _same(first, second):
+            raise LawError(
+                f"{self.family} law '{self.name}' gave {first!r}, then {second!r}, for the same input:"
+                f" a law is a pure function of its arguments"
+            )
+
+    def _sample_call(self) -> Any:
+        samples: dict[str, Any] = {
+            f"signal_{k}": _sample(kind) for k, kind in enumerate(self._family.signals)
+        }
+        samples |= {"dt": 0.1, "memory": self.memory_type() if self.memory_type else None}
+        defaults = iter(p.default for p in self.parameters)
+        return self.function(*[samples[g] if g in samples else next(defaults) for g in self._given])
+
+    def __reduce__(self) -> Any:
+        """Pickle by reference; a law typed in a script or notebook goes by value."""
+        if self.function.__module__ != "__main__":
+            return _law_at, (self.function.__module__, self.function.__qualname__)
+        import cloudpickle
+
+        return _rebuild, (cloudpickle.dumps((self.family, self.function, self.common)),)
+
+
+def _law_at(module: str, name: str) -> Law:
+    return typing.cast(Law, getattr(importlib.import_module(module), name))
+
+
+def _rebuild(data: bytes) -> Law:
+    import cloudpickle
+
+    family, function, common = cloudpickle.loads(data)
+    return Law(_families[family], function, common)
+
+
+def _parameter(name: str, default: Any, hint: Any) -> Parameter:
+    unit, bounds = "", Bounds()
+    for note in getattr(hint, "__metadata__", ()):
+        if isinstance(note, Unit):
+            unit = note.symbol
+        elif isinstance(note, Bounds):
+            bounds = note
+    return Parameter(name, float(default), unit, *bounds)
+
+
+def _sample(kind: Any) -> Any:
+    """Plausible, unremarkable input: every number 0.5, every table a few zeros."""
+    if kind is float:
+        return 0.5
+    rows = {f for f, hint in kind.__annotations__.items() if hint in (Rows, SharedRows)}
+    return kind(*[np.zeros(256) if f in rows else 0.5 for f in kind._fields])
+
+
+def _fits(answer: Any, result: Any) -> bool:
+    if result is float:
+        return isinstance(answer, (int, float, np.floating)) and not isinstance(answer, bool)
+    return isinstance(answer, result)
+
+
+def _same(first: Any, second: Any) -> bool:
+    def numbers(value: Any) -> Iterable[float]:
+        return [x for part in value for x in numbers(part)] if np.ndim(value) else [float(value)]
+
+    if isinstance(first, tuple):
+        return len(first) == len(second) and all(_same(a, b) for a, b in zip(first, second, strict=True))
+    return np.array_equal(list(numbers(first)), list(numbers(second)), equal_nan=True)
+
+
+def _shape(result: Any) -> str:
+    return "a number" if result is float else f"{result.__name__}({', '.join(result._fields)})"
+
+
+def _last_words(problem: Exception) -> str:
+    """The part of Numba's message that is about the user's code."""
+    lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
+    telling = [x for x in lines if x.startswith(("Unknown attribute", "Untyped global", "No implementation", "File "))]
+    return "; ".join(telling[:3] or lines[:3])
+
+
+def all_families() -> dict[str, dict[str, Law]]:
+    """The built-in laws of every family that has been imported."""
+    return {name: dict(_families[name].laws) for name in FAMILIES if name in _families}
+
+
+def family(name: str) -> Family:
+    """A family by its mission key."""
+    return _families[name]
+
+
+def laws_of(name: str) -> dict[str, Law]:
+    """The built-in laws of one family."""
+    return dict(_families[name].laws)
+
+
+__all__ = [
+    "COLUMNS",
+    "FAMILIES",
+    "Bounds",
+    "Law",
+    "LawBook",
+    "LawError",
+    "Length",
+    "Meters",
+    "MetersPerSecond",
+    "Number",
+    "Parameter",
+    "Positive",
+    "Probability",
+    "Radians",
+    "Seconds",
+    "Unit",
+    "all_families",
+    "family",
+    "law_family",
+    "laws_of",
+    "record_type",
+    "sensor_family",
+]

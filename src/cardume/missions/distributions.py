@@ -1,0 +1,98 @@
+"""Values that are not fixed yet: drawn from a distribution, or swept by a study."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, is_dataclass, replace
+from typing import Any
+
+from cardume.missions.schema import ANY, Bounds, Laws, fields_of
+from cardume.missions.source import join
+from cardume.missions.vehicle import LawChoice, Table, Vehicle
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Uniform:
+    """Any number from `low` to `high`, all as likely; `per` is mission or vehicle."""
+
+    low: float
+    high: float
+    per: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Normal:
+    """A normal distribution, cut off at the bounds of the key that holds it."""
+
+    mean: float
+    deviation: float
+    per: str
+    bounds: Bounds = ANY
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Choose:
+    """One of several values or whole sections, all as likely."""
+
+    options: tuple[Any, ...]
+    per: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sweep:
+    """Several values or whole sections, each of which a study flies."""
+
+    options: tuple[Any, ...]
+    per: str
+
+
+Varying = Uniform | Normal | Choose | Sweep
+
+
+def rebuild(value: Any, visit: Callable[[str, Any], Any], key: str = "") -> Any:
+    """A record with every value in it replaced by what `visit(key, value)` gives, from the outside in."""
+    value = visit(key, value)
+    if isinstance(value, LawChoice):
+        items = {name: visit(join(key, name), item) for name, item in value.parameters.items()}
+        return replace(value, parameters=Table(items))
+    if isinstance(value, tuple):
+        return tuple(rebuild(item, visit, join(key, _item_key(item, index))) for index, item in enumerate(value))
+    fields = fields_of(type(value)) if is_dataclass(value) else ()
+    changes = {
+        field.key: rebuild(
+            getattr(value, field.key),
+            visit,
+            key if isinstance(field.kind, Laws) and field.kind.inlined else join(key, field.key),
+        )
+        for field in fields
+    }
+    return replace(value, **changes) if changes else value
+
+
+def values_of(record: Any) -> Iterator[tuple[str, Any]]:
+    """Every value in a record, records included, with its dotted key."""
+    found: list[tuple[str, Any]] = []
+
+    def keep(key: str, value: Any) -> Any:
+        found.append((key, value))
+        return value
+
+    rebuild(record, keep)
+    return iter(found)
+
+
+def varying_values(record: Any) -> list[tuple[str, Varying]]:
+    """Every value that varies, by the key under which it is drawn or swept, each key once."""
+    found = {shared_key(key, value): value for key, value in values_of(record) if isinstance(value, Varying)}
+    return list(found.items())
+
+
+def shared_key(key: str, value: Varying) -> str:
+    """The key under which a value varies: that of the fleet's section if all vehicles share it."""
+    words = key.split(".")
+    is_shared = value.per == "mission" and words[0] == "vehicles"
+    return ".".join(words[2:]) if is_shared else key
+
+
+def _item_key(item: Any, index: int) -> str:
+    return item.name if isinstance(item, Vehicle) else str(index)

@@ -1,0 +1,41 @@
+"""What every path file becomes, whatever its format."""
+
+from dataclasses import dataclass
+
+from cardume.missions.geodesy import GeoPoint
+from cardume.paths.segment import ReferencePath
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Member:
+    """A vehicle of the formation, as a path file knows it.
+
+    Attributes:
+        id: its number in the file.
+        ahead, starboard: [m] its offset from the reference path.
+        depth: [m] that the file asks for; None: it asks for none.
+    """
+
+    id: int
+    ahead: float = 0.0
+    starboard: float = 0.0
+    depth: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Plan:
+    """A reference path on the Earth, and who flies beside it.
+
+    Attributes:
+        source: the file.
+        origin: where north = east = 0 lies.
+        segments: the reference path in local axes, with its speeds.
+        members: of the formation.
+        notes: what of the file is not flown, one sentence each.
+    """
+
+    source: str
+    origin: GeoPoint
+    segments: ReferencePath
+    members: tuple[Member, ...]
+    notes: tuple[str, ...] = ()

@@ -1,0 +1,100 @@
+"""Which law a section names, and which keys that law brings with it."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING
+
+from cardume.errors import LawError
+from cardume.missions.catalog import Context, Law, Parameter
+from cardume.missions.schema import HUGE, Bounds, Field, File, Kind, Laws, Quantity, Text, fields_of, records_of
+from cardume.missions.source import Node
+from cardume.missions.varying import is_varying
+from cardume.missions.vehicle import LawChoice
+from cardume.missions.wording import unknown
+from cardume.units import show_text
+
+TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
+    ("current", "gridded"): (
+        Field("file", File(fixed=True), MISSING, None, False, "CF NetCDF with the velocity of the water"),
+        Field("east", Text(fixed=True), None, None, False, "its variable for the velocity to the east"),
+        Field("north", Text(fixed=True), None, None, False, "its variable for the velocity to the north"),
+        Field("start_time", Text(fixed=True), None, None, False, "date of the mission's start, ISO 8601, UTC"),
+    ),
+}
+"""What laws take beside numbers: texts, which compiled code does not see."""
+
+
+class Chosen:
+    """The law that a section names, as the fields it brings."""
+
+    def __init__(self, kind: Laws, name: str, law: Law | None) -> None:
+        self.kind, self.name = kind, name
+        self.fields = () if law is None else law_fields(law)
+
+    @property
+    def keys(self) -> set[str]:
+        """The keys that may stand in the section because of this law."""
+        return {self.kind.selector, *(field.key for field in self.fields)}
+
+
+def choose_law(kind: Laws, entries: dict[str, Node], section: Node, context: Context) -> Chosen:
+    """The law that `entries` names, or else the default.
+
+    Raises:
+        MissionError: no such law, or the user's law cannot be had.
+    """
+    named, builtin = entries.get(kind.selector), context.catalog.laws_of(kind.family)
+    if named is None:
+        name = kind.default if kind.default in {*builtin, *kind.words} else next(iter(builtin), None)
+        if name is None:
+            raise section.error(f"there is no law of the family {kind.family} to choose")
+        return Chosen(kind, name, builtin.get(name))
+    if is_varying(named):
+        raise named.error(
+            f"a varying law carries its parameters: write the whole section as"
+            f" {{sweep: [{{{kind.selector}: ..., ...}}, {{{kind.selector}: ..., ...}}]}}"
+        )
+    name = named.value
+    if isinstance(name, str) and ":" in name:
+        return Chosen(kind, name, _user_law(kind, name, named, context))
+    if isinstance(name, str) and (name in builtin or isinstance(kind.words.get(name), LawChoice)):
+        return Chosen(kind, name, builtin.get(name))
+    valid = [*builtin, *(word for word in kind.words if word not in builtin)]
+    message = unknown(f"there is no {kind.family} law {named.given()}", str(name), valid)
+    raise named.error(f"{message}, or your own as module:function")
+
+
+def law_fields(law: Law) -> tuple[Field, ...]:
+    """A law's parameters, as fields of its section."""
+    numbers = tuple(
+        Field(parameter.name, _quantity(parameter), float(parameter.default), None, False, "")
+        for parameter in law.parameters
+    )
+    return TEXT_PARAMETERS.get((law.family, law.name), ()) + numbers
+
+
+def inlined_laws(kind: Kind) -> list[Laws]:
+    """The laws whose keys stand directly in a section of this kind."""
+    if isinstance(kind, Laws):
+        return [kind]
+    kinds = [field.kind for record in records_of(kind) for field in fields_of(record)]
+    return [inner for inner in kinds if isinstance(inner, Laws) and inner.inlined]
+
+
+def _quantity(parameter: Parameter) -> Quantity:
+    low, high = max(parameter.low, -HUGE), min(parameter.high, HUGE)
+    bounds = Bounds(low, high, parameter.low_open and low == parameter.low, parameter.high_open)
+    return Quantity(parameter.unit, bounds, in_ticks=parameter.name == "period")
+
+
+def _user_law(kind: Laws, name: str, named: Node, context: Context) -> Law:
+    try:
+        law = context.catalog.resolve_law(kind.family, name)
+    except LawError as problem:
+        raise named.error(f"{show_text(name)} cannot be used: {problem}") from None
+    except Exception as problem:  # whatever importing the user's file raises is the user's to mend
+        reason = f"{type(problem).__name__}: {problem}"
+        raise named.error(f"{show_text(name)} cannot be imported: {show_text(reason, 300)[1:-1]}") from problem
+    if law.family != kind.family:
+        raise named.error(f"{show_text(name)} is a {law.family} law; a {kind.family} law is needed here")
+    return law

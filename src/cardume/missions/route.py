@@ -1,0 +1,119 @@
+"""The forms a reference path may take in a mission file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from cardume.missions.schema import POSITIVE, File, Forms, Group, ListOf, Quantity, Whole, Word
+
+Meters = Annotated[float, Quantity("m")]
+PositiveMeters = Annotated[float, Quantity("m", POSITIVE)]
+Angle = Annotated[float, Quantity("rad")]
+PositiveAngle = Annotated[float, Quantity("rad", POSITIVE)]
+SpeedOrNone = Annotated[float | None, Quantity("m/s", POSITIVE)]
+Turn = Annotated[str, Word(("starboard", "port"))]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Point:
+    """A horizontal position, NED."""
+
+    north: Annotated[Meters, "north of the origin"]
+    east: Annotated[Meters, "east of the origin"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PathStart:
+    """Where the reference path begins, and its course there."""
+
+    north: Annotated[Meters, "north of the origin"] = 0.0
+    east: Annotated[Meters, "east of the origin"] = 0.0
+    course: Annotated[Angle, "clockwise from north"] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinePath:
+    """A straight line."""
+
+    start: Annotated[PathStart, Group(PathStart), "where it begins"] = PathStart()
+    length: Annotated[PositiveMeters, "its length"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArcPath:
+    """An arc of a circle."""
+
+    start: Annotated[PathStart, Group(PathStart), "where it begins"] = PathStart()
+    radius: Annotated[PositiveMeters, "of the reference path"]
+    turn: Annotated[Turn, "starboard: clockwise seen from above"] = "starboard"
+    angle: Annotated[PositiveAngle, "by which the course changes"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CirclePath:
+    """A whole circle."""
+
+    centre: Annotated[Point, Group(Point), "of the circle"]
+    radius: Annotated[PositiveMeters, "of the reference path"]
+    turn: Annotated[Turn, "starboard: clockwise seen from above"] = "starboard"
+    start_bearing: Annotated[Angle, "of the first point, seen from the centre"] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LawnmowerPath:
+    """Parallel legs joined by half circles of radius spacing / 2."""
+
+    start: Annotated[PathStart, Group(PathStart), "where the first leg begins"] = PathStart()
+    leg: Annotated[PositiveMeters, "length of a leg"]
+    legs: Annotated[int, Whole(1, 10_000), "number of legs"]
+    spacing: Annotated[PositiveMeters, "between neighboring legs"]
+    turn: Annotated[Turn, "sense of the first half circle"] = "starboard"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineSegment:
+    """A straight piece of a path; without a speed, the formation's."""
+
+    line: Annotated[PositiveMeters, "its length"]
+    speed: Annotated[SpeedOrNone, "along it, instead of the formation's"] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ArcSegment:
+    """A round piece of a path; without a speed, the formation's."""
+
+    arc: Annotated[PositiveMeters, "its radius"]
+    turn: Annotated[Turn, "starboard: clockwise seen from above"] = "starboard"
+    angle: Annotated[PositiveAngle, "by which the course changes"]
+    speed: Annotated[SpeedOrNone, "along it, instead of the formation's"] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SegmentsPath:
+    """Lines and arcs, each continuing where the one before ends."""
+
+    start: Annotated[PathStart, Group(PathStart), "where the first piece begins"] = PathStart()
+    segments: Annotated[
+        tuple[LineSegment | ArcSegment, ...],
+        ListOf(Forms((LineSegment, ArcSegment))),
+        "the pieces, each {line: ...} or {arc: ..., turn: ..., angle: ...}",
+    ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilePath:
+    """A path read from another file."""
+
+    file: Annotated[str, File(), "the path file"]
+
+
+PATHS = {
+    "line": LinePath,
+    "arc": ArcPath,
+    "circle": CirclePath,
+    "lawnmower": LawnmowerPath,
+    "segments": SegmentsPath,
+    "file": FilePath,
+}
+AnyPath = LinePath | ArcPath | CirclePath | LawnmowerPath | SegmentsPath | FilePath

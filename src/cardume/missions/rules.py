@@ -1,0 +1,103 @@
+"""What the values of a mission must obey together, checked once they are plain values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cardume.errors import MissionError, Problem
+from cardume.missions.distributions import values_of
+from cardume.missions.mission import Mission
+from cardume.missions.route import FilePath, SegmentsPath
+from cardume.missions.vehicle import LawChoice
+from cardume.units import format_quantity
+
+MOST_ROWS = 5_000_000
+
+
+def check_rules(mission: Mission) -> None:
+    """Check a mission as far as its values are known.
+
+    Raises:
+        MissionError: with every rule that is broken, where the value stands.
+    """
+    found = [*_step_rules(mission), *_period_rules(mission), *_path_rules(mission), *_fleet_rules(mission)]
+    if found:
+        raise MissionError(Problem(mission.where(key), message) for key, message in found)
+
+
+def _step_rules(mission: Mission) -> Iterator[tuple[str, str]]:
+    tick, step = mission.tick, mission.plant_step
+    if _are_plain(tick, step) and not _is_whole(tick / step):
+        count = max(1, int(tick / step))
+        valid = f"{format_quantity(tick / (count + 1), 's')} and {format_quantity(tick / count, 's')}"
+        yield (
+            "plant_step",
+            f"given {format_quantity(step, 's')}; the tick, {format_quantity(tick, 's')}, must be a whole"
+            f" multiple of it: the nearest are {valid}",
+        )
+
+
+def _period_rules(mission: Mission) -> Iterator[tuple[str, str]]:
+    """Whatever recurs does so every so many ticks."""
+    periods = [("log_period", mission.log_period)]
+    for key, value in values_of(mission):
+        if isinstance(value, LawChoice) and "period" in value.parameters:
+            periods.append((f"{key}.period", value.parameters["period"]))
+    tick = mission.tick
+    for key, period in periods:
+        if _are_plain(tick, period) and not _is_whole(period / tick):
+            count = int(period / tick)
+            valid = " and ".join(str(format_quantity(tick * n, "s")) for n in (count, count + 1) if n > 0)
+            yield (
+                key,
+                f"given {format_quantity(period, 's')}; must be a whole multiple of the tick,"
+                f" {format_quantity(tick, 's')}: the nearest are {valid}",
+            )
+
+
+def _path_rules(mission: Mission) -> Iterator[tuple[str, str]]:
+    path = mission.path
+    says_speed = isinstance(path, FilePath) or (
+        isinstance(path, SegmentsPath) and all(segment.speed is not None for segment in path.segments)
+    )
+    if mission.formation.speed is None and not says_speed:
+        yield "formation.speed", "missing; v_L, along the reference path; must be a speed, as '0.5 m/s'"
+
+
+def _fleet_rules(mission: Mission) -> Iterator[tuple[str, str]]:
+    first = mission.vehicles[0]
+    for vehicle in mission.vehicles[1:]:
+        here = f"vehicles.{vehicle.name}"
+        if _differ(getattr(vehicle.coordination, "topology", None), getattr(first.coordination, "topology", None)):
+            yield (
+                f"{here}.coordination.topology",
+                f"differs from that of {first.name}; the fleet has one graph:"
+                " give it once, in the coordination section of the whole fleet",
+            )
+        if _differ(getattr(vehicle.acoustics, "name", None), getattr(first.acoustics, "name", None)):
+            yield (
+                f"{here}.acoustics.channel",
+                f"differs from that of {first.name}; the fleet shares one channel:"
+                " give it once, and per vehicle only its parameters",
+            )
+    if _are_plain(mission.duration, mission.log_period):
+        rows = mission.duration / mission.log_period * len(mission.vehicles)
+        if rows > MOST_ROWS:
+            least = mission.log_period * rows / MOST_ROWS
+            yield (
+                "log_period",
+                f"the log would have {rows:.3g} rows, at most {MOST_ROWS:,}; a period above {least:.3g} s fits",
+            )
+
+
+def _are_plain(*values: object) -> bool:
+    """Whether all values are numbers already, neither drawn nor swept."""
+    return all(isinstance(value, float) for value in values)
+
+
+def _is_whole(ratio: float) -> bool:
+    return ratio > 0.5 and abs(ratio - round(ratio)) <= 1e-9 * ratio
+
+
+def _differ(one: object, other: object) -> bool:
+    return one is not None and other is not None and one != other

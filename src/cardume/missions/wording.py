@@ -1,0 +1,133 @@
+"""What a kind of key wants, in the words of an error message."""
+
+from __future__ import annotations
+
+import math
+from functools import singledispatch
+
+from cardume.missions.schema import (
+    HUGE,
+    Bounds,
+    File,
+    Forms,
+    Graph,
+    Group,
+    Kind,
+    Laws,
+    ListOf,
+    Name,
+    Quantity,
+    Requirements,
+    Text,
+    Variant,
+    Whole,
+    Word,
+    fields_of,
+)
+from cardume.units import format_quantity, nearest
+
+
+@singledispatch
+def wanted(kind: Kind) -> str:
+    """What is valid here, to follow `must be`."""
+    raise TypeError(kind)
+
+
+@wanted.register
+def _quantity(kind: Quantity) -> str:
+    example = f", as '{format_quantity(_example(kind.bounds), kind.unit)}'" if kind.unit else ""
+    return f"a number{example}{_limits(kind.bounds, kind.unit)}"
+
+
+@wanted.register
+def _whole(kind: Whole) -> str:
+    if kind.low == kind.high:
+        return f"{kind.low}"
+    return f"a whole number from {kind.low} to {kind.high}"
+
+
+@wanted.register
+def _word(kind: Word) -> str:
+    return f"one of {', '.join(kind.choices)}"
+
+
+@wanted.register
+def _name(_kind: Name) -> str:
+    return "a text of 1 to 64 letters, digits, - and _ that begins with a letter or digit; quote a number"
+
+
+@wanted.register
+def _text(_kind: Text) -> str:
+    return "a text on one line"
+
+
+@wanted.register
+def _file(_kind: File) -> str:
+    return "the name of a file, relative to the mission file"
+
+
+@wanted.register
+def _graph(kind: Graph) -> str:
+    return f"one of {', '.join(kind.names)}, or a square matrix of numbers, one row for each vehicle that listens"
+
+
+@wanted.register
+def _requirements(_kind: Requirements) -> str:
+    return "a mapping of metrics to limits; of one vehicle, its name and such a mapping"
+
+
+@wanted.register
+def _laws(kind: Laws) -> str:
+    return f"the name of a law, or a mapping with {kind.selector}: and its parameters"
+
+
+@wanted.register
+def _group(kind: Group) -> str:
+    words = "".join(f", or '{word}'" for word in kind.words)
+    return f"a mapping with the keys {', '.join(keys_of(kind.record))}{words}"
+
+
+@wanted.register
+def _variant(kind: Variant) -> str:
+    return f"a mapping with type: one of {', '.join(kind.records)}"
+
+
+@wanted.register
+def _forms(kind: Forms) -> str:
+    return f"a mapping with the keys {'; or '.join(', '.join(keys_of(record)) for record in kind.records)}"
+
+
+@wanted.register
+def _list(_kind: ListOf) -> str:
+    return "a list with at least one item, each on a line that begins with '- '"
+
+
+def keys_of(record: type) -> list[str]:
+    """The keys of a record's section that do not depend on a law."""
+    return [
+        field.kind.selector if isinstance(field.kind, Laws) and field.kind.inlined else field.key
+        for field in fields_of(record)
+    ]
+
+
+def unknown(what: str, given: str, valid: list[str]) -> str:
+    """An unknown name: which is nearest, and which there are."""
+    listed = ", ".join(valid[:40]) + (", ..." if len(valid) > 40 else "")
+    return f"{what}{nearest(given, valid)} Valid here: {listed or 'nothing'}"
+
+
+def _limits(bounds: Bounds, unit: str) -> str:
+    ends = []
+    if bounds.low > -HUGE and math.isfinite(bounds.low):
+        ends.append(f"{'above' if bounds.low_open else 'at least'} {format_quantity(bounds.low, unit)}")
+    if bounds.high < HUGE and math.isfinite(bounds.high):
+        ends.append(f"{'below' if bounds.high_open else 'at most'} {format_quantity(bounds.high, unit)}")
+    if not ends:
+        return f" between {format_quantity(-HUGE, unit)} and {format_quantity(HUGE, unit)}"
+    return f", {' and '.join(ends)}"
+
+
+def _example(bounds: Bounds) -> float:
+    if bounds.contain(1.0):
+        return 1.0
+    return bounds.low if bounds.contain(bounds.low) else bounds.high

@@ -1,0 +1,1 @@
+"""What runs on a vehicle: it sees measurements and packets, never the truth."""

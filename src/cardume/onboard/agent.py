@@ -1,0 +1,110 @@
+"""The order in which a vehicle thinks.  The engine and the bridges both call `decide`."""
+
+from cardume.compiler import Rows, compiled, load, some, where
+from cardume.maths import atan2, clip, hypot
+from cardume.onboard.compensation import compensate as choose_heading
+from cardume.onboard.coordination import correct_speed
+from cardume.onboard.guidance import guide as choose_course
+from cardume.onboard.mind import (
+    Correction,
+    Mind,
+    get_setup,
+    get_whereabouts,
+    put_correction,
+)
+from cardume.onboard.navigation import (
+    believed_motion,
+    locate,
+    navigate,
+    observe_current,
+    speed_through_water,
+)
+from cardume.onboard.neighborhood import Said, look_around, predict_neighbors, report
+from cardume.paths.projection import point_at
+from cardume.paths.table import LENGTH_OWN
+from cardume.signals import Course, Disagreement, Measured, Motion, PathError, Reference
+
+HOLD_RADIUS = 1.0  # [m] within which a vehicle that holds the end point rests
+HOLD_GAIN = 0.2  # [1/s] speed per distance when it comes back to it
+
+
+@compiled
+def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Reference, Said]:
+    """All guidance aboard one vehicle, once a tick.
+
+    Args:
+        mind: its laws, setup and memories, changed in place.
+        measured: what its sensors say in this tick.
+        heard: (sources, message) its inbox.
+        time: [s] since the start of the mission.
+
+    Returns:
+        What to ask of the autopilot, and what to tell the others.
+
+    Source: paper section 4; (37), (49), (33), (5)-(8), (53)-(55), (3)-(18), (44)-(45), (36).
+    """
+    speed = speed_through_water(mind, measured)
+    motion = believed_motion(mind, measured, speed)
+    position = navigate(mind, measured, heard, motion, time)
+    current = observe_current(mind, position, motion)
+    error = locate(mind, position, motion, current)
+    look_around(mind, measured, position, error, time)
+    others = predict_neighbors(mind, heard, error, time)
+    course = guide(mind, error)
+    along = progress(mind, error, coordinate(mind, others))
+    reference = compensate(mind, error, Course(course, along, get_setup(mind.own, 0).over_ground), motion)
+    return reference, report(mind, measured, time)
+
+
+@compiled
+def coordinate(mind: Mind, others: Disagreement) -> float:
+    """Correction of the formation's speed [m/s]: (44), (45)."""
+    correction = correct_speed(mind.book, mind.me, others)
+    put_correction(mind.own, 0, Correction(correction))
+    return correction
+
+
+@compiled
+def guide(mind: Mind, error: PathError) -> float:
+    """Desired course [rad]; past the end, if the vehicle stays, the bearing of the end point."""
+    course = choose_course(mind.book, 0, error)
+    stays = _stays(mind, error)
+    if some(stays):
+        _, bearing = _to_the_end(mind, error)
+        course = where(stays, bearing, course)
+    return course
+
+
+@compiled
+def progress(mind: Mind, error: PathError, correction: float) -> float:
+    """Desired speed along the path [m/s], h (v_L + correction), never astern; past the end, back to it."""
+    along = clip(error.stretch * (error.speed_profile + correction), 0.0, 1e9)
+    stays = _stays(mind, error)
+    if some(stays):
+        distance, _ = _to_the_end(mind, error)
+        homing = where(distance > HOLD_RADIUS, clip(HOLD_GAIN * distance, 0.0, error.speed_profile), 0.0)
+        along = where(stays, homing, along)
+    return along
+
+
+@compiled
+def compensate(mind: Mind, error: PathError, course: Course, motion: Motion) -> Reference:
+    """Heading and speed that give the course and the speed in this current: (36) corrected."""
+    steering = choose_heading(mind.book, 0, course, motion)
+    setup = get_setup(mind.own, 0)
+    depth = setup.depth * (1.0 - setup.surfaces * error.finished)
+    return Reference(course.course, steering.heading, steering.speed, depth)
+
+
+@compiled
+def _stays(mind: Mind, error: PathError) -> bool:
+    return (error.finished > 0.5) & (get_setup(mind.own, 0).stays > 0.5)
+
+
+@compiled
+def _to_the_end(mind: Mind, error: PathError) -> tuple[float, float]:
+    """Distance [m] and bearing [rad] of the end of the path."""
+    end = point_at(error.path, load(error.path, LENGTH_OWN))
+    believed = get_whereabouts(mind.own, 0)
+    north, east = end.north - believed.north, end.east - believed.east
+    return hypot(north, east), atan2(east, north)

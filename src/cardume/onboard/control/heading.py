@@ -1,0 +1,139 @@
+"""Heading loop: feedback of heading, yaw rate and estimated sway, scheduled with speed, and the moment a turn needs."""
+
+from typing import NamedTuple
+
+from cardume.compiler import compiled, where
+from cardume.maths import clip, wrap_angle
+from cardume.signals import Feedback
+from cardume.vehicles.hull import drag, sway_step
+
+# Where the gains change with speed, found with the margins in `feedforward_pid`.
+SOFTENING_SPEED = 0.9  # [m/s] heading gain is halved here
+STIFFENING_SPEED = 1.4  # [m/s] yaw-rate gain is doubled here
+SMALL_ERROR = 0.15  # [rad] the integral is held beyond
+
+
+class HeadingGains(NamedTuple):
+    """How hard to steer, and what is known of the hull."""
+
+    gain: float  # [N m/rad] at rest
+    rate_gain: float  # [N m s] at rest
+    integral_gain: float  # [N m/(rad s)]
+    sway_share: float  # [-] of the Munk moment that is cancelled
+    turn_bandwidth: float  # [1/s]
+    jump: float  # [rad]
+    moment_max: float  # [N m]
+    surge_mass: float  # [kg]
+    sway_mass: float  # [kg]
+    sway_drag: float  # [N s/m]
+    sway_drag_quadratic: float  # [N s^2/m^2]
+    yaw_drag: float  # [N m s]
+    yaw_drag_quadratic: float  # [N m s^2]
+
+
+class HeadingState(NamedTuple):
+    """What the heading loop remembers."""
+
+    turn_heading: float  # [rad] tracking filter of the reference
+    turn_rate: float  # [rad/s] and its rate
+    sway: float  # [m/s] estimate
+    integral: float  # [N m]
+
+
+@compiled
+def track_turn(
+    heading: float, rate: float, reference: float, bandwidth: float, jump: float, dt: float
+) -> tuple[float, float]:
+    """How fast the reference turns: a second-order filter that follows ramps without lag.
+
+    psi_f' = z + 2 b (psi_ref - psi_f),   z' = b^2 (psi_ref - psi_f)
+
+    A reference further off than `jump` is a new direction, which tells nothing about turning: the
+    filter goes there at once and keeps its rate.
+
+    Args:
+        heading: [rad] psi_f.
+        rate: [rad/s] z.
+        reference: [rad] psi_ref.
+        bandwidth: [1/s] b > 0.
+        jump: [rad] > 0.
+        dt: [s] plant step.
+
+    Returns:
+        The next psi_f [rad] and z [rad/s].
+    """
+    ahead = wrap_angle(reference - heading)
+    jumped = abs(ahead) > jump
+    followed = where(jumped, 0.0, ahead)
+    moved = where(jumped, ahead, dt * (rate + 2.0 * bandwidth * followed))
+    return heading + moved, rate + dt * bandwidth * bandwidth * followed
+
+
+@compiled
+def turning_moment(rate: float, surge: float, gains: HeadingGains) -> float:
+    """Moment that holds a turn: drag, less what is left of the Munk moment.
+
+    N = (d + D |z|) z - (1 - share) (m_v - m_u) m_u u^2 z / Y,   Y the linear sway drag
+
+    Args:
+        rate: [rad/s] z.
+        surge: [m/s] u.
+        gains: of the loop.
+
+    Returns:
+        The moment [N m].
+    """
+    sway = -gains.surge_mass * surge * rate / gains.sway_drag
+    munk = (gains.sway_mass - gains.surge_mass) * surge * sway
+    return drag(rate, gains.yaw_drag, gains.yaw_drag_quadratic) + (1.0 - gains.sway_share) * munk
+
+
+@compiled
+def steer_heading(
+    feedback: Feedback, surge: float, state: HeadingState, gains: HeadingGains, dt: float
+) -> tuple[float, HeadingState]:
+    """Yaw moment for the wanted heading.
+
+    N = kp(u) (psi_ref - psi) + kd(u) (z - r) + N_turn(z, u) + share (m_v - m_u) u v + s
+
+    z is how fast the reference turns (`track_turn`), v the estimated sway, s the integral.
+
+    Args:
+        feedback: heading and yaw rate, measured; the wanted heading. NaN counts as no error.
+        surge: [m/s] u, as believed.
+        state: what the loop remembers.
+        gains: of the loop.
+        dt: [s] plant step.
+
+    Returns:
+        The moment [N m] and the next state.
+    """
+    heading, rate = track_turn(
+        state.turn_heading, state.turn_rate, feedback.reference_heading, gains.turn_bandwidth, gains.jump, dt
+    )
+    knows = (feedback.heading == feedback.heading) & (feedback.yaw_rate == feedback.yaw_rate)
+    error = where(knows, wrap_angle(feedback.reference_heading - feedback.heading), 0.0)
+    yaw_rate = where(knows, feedback.yaw_rate, rate)
+    fast, faster = surge / SOFTENING_SPEED, surge / STIFFENING_SPEED
+    munk = gains.sway_share * (gains.sway_mass - gains.surge_mass) * surge * state.sway
+    wanted = (
+        gains.gain * error / (1.0 + fast * fast)
+        + gains.rate_gain * (1.0 + faster * faster) * (rate - yaw_rate)
+        + turning_moment(rate, surge, gains)
+        + munk
+        + state.integral
+    )
+    works = (abs(wanted) < gains.moment_max) & (abs(error) < SMALL_ERROR)
+    integral = state.integral + where(works, dt * gains.integral_gain * error, 0.0)
+    sway = sway_step(
+        state.sway,
+        surge,
+        yaw_rate,
+        gains.surge_mass,
+        gains.sway_mass,
+        gains.sway_drag,
+        gains.sway_drag_quadratic,
+        dt,
+    )
+    moment = clip(wanted, -gains.moment_max, gains.moment_max)
+    return moment, HeadingState(heading, rate, sway, clip(integral, -0.2 * gains.moment_max, 0.2 * gains.moment_max))

@@ -1,0 +1,21 @@
+"""No autopilot: for vehicles that follow their reference by themselves."""
+
+from cardume.onboard.control.base import autopilot_law
+from cardume.signals import Command, Feedback
+
+
+@autopilot_law
+def none(feedback: Feedback) -> Command:
+    """Ask nothing of the thrusters.
+
+    tau = 0
+
+    Args:
+        feedback: not looked at; times zero, so that the answer is as wide as the signals are.
+
+    Returns:
+        Zero thrust [N], moment [N m] and heave force [N].
+
+    Source: paper eq. (1), whose vehicle has no thrusters.
+    """
+    return Command(0.0, 0.0, 0.0)

@@ -1,0 +1,1 @@
+"""Estimation aboard: position, current, speed, and what the neighbors do meanwhile."""

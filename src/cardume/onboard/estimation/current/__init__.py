@@ -1,0 +1,7 @@
+"""Current observers."""
+
+from cardume.onboard.estimation.current.base import current_observer_law, observe
+from cardume.onboard.estimation.current.complementary import complementary
+from cardume.onboard.estimation.current.none import none
+
+__all__ = ["complementary", "current_observer_law", "none", "observe"]

@@ -1,0 +1,27 @@
+"""Dead reckoning over one tick."""
+
+from cardume.compiler import compiled
+from cardume.maths import to_ned
+from cardume.signals import Motion
+
+
+@compiled
+def displacement(motion: Motion, dt: float) -> tuple[float, float]:
+    """How far the vehicle comes in one tick, north and east.
+
+    dp = [R(psi + r dt / 2) (u, v) + Vc_hat] dt
+
+    The heading in the middle of the tick: Euler's rule, printed, lags by u dt |sin(theta / 2)| after a
+    turn by theta.
+
+    Args:
+        motion: believed heading [rad], yaw rate [rad/s], velocity through the water and current [m/s].
+        dt: [s] tick.
+
+    Returns:
+        North and east [m].
+
+    Source: paper eq. (49), midpoint instead of Euler, hats restored.
+    """
+    north, east = to_ned(motion.heading + 0.5 * dt * motion.yaw_rate, motion.surge, motion.sway)
+    return dt * (north + motion.current_north), dt * (east + motion.current_east)

@@ -1,0 +1,146 @@
+"""The mind of one vehicle: its laws, what it was told before the mission, and what it remembers."""
+
+from typing import Any, NamedTuple
+
+from cardume.compiler import Layout, Rows, at, compiled, load
+from cardume.laws import LawBook
+from cardume.signals import NOTHING, DvlReading, Report, Sighting, Water
+
+
+LONG_AGO = -1e9  # [s] before any mission
+
+
+class Setup(NamedTuple):
+    """What a vehicle is told before the mission."""
+
+    depth: float = 0.0  # [m] to keep
+    over_ground: float = 1.0  # [-] 1: path speed is over ground, 0: through the water
+    stays: float = 1.0  # [-] 1: hold the end point, 0: go on along the extended path
+    surfaces: float = 0.0  # [-] 1: come up at the end
+    shares_sightings: float = 0.0  # [-] 1: carries a USBL head and tells the others where they are
+
+
+class Whereabouts(NamedTuple):
+    """Where a vehicle believes it is."""
+
+    north: float = 0.0  # [m]
+    east: float = 0.0  # [m]
+    time_of_fix: float = LONG_AGO  # [s] validity of the last fix used
+
+
+class Along(NamedTuple):
+    """Where it believes it is on its path."""
+
+    cross_track: float = 0.0  # [m]
+    coordination_state: float = 0.0  # [m]
+    path_speed: float = 0.0  # [m/s] rate of the coordination state
+    finished: float = 0.0  # [-] 1 once past the end
+
+
+class Speech(NamedTuple):
+    """What it said last."""
+
+    last_sent: float = LONG_AGO  # [s]
+    sequence: float = 0.0  # [-] messages sent
+
+
+class Correction(NamedTuple):
+    """What coordination adds to the formation's speed."""
+
+    speed: float = 0.0  # [m/s]
+
+
+class Acquaintance(NamedTuple):
+    """What a vehicle knows of one other."""
+
+    state: float = NOTHING  # [m] last known coordination state
+    path_speed: float = 0.0  # [m/s] and its rate
+    time_of_validity: float = LONG_AGO  # [s]
+    is_new: float = 0.0  # [-] 1 when this was learnt in this tick
+    predicted: float = NOTHING  # [m] coordination state now
+    north: float = NOTHING  # [m] where it was seen
+    east: float = NOTHING  # [m]
+    time_of_fix: float = NOTHING  # [s] when
+
+
+class Mind(NamedTuple):
+    """All of one vehicle's tables; `known`, `sources` and `neighbors` are lists after their length."""
+
+    book: LawBook
+    own: Rows  # the records of OWN
+    others: Rows  # (vehicle, Acquaintance)
+    paths: Rows  # path tables of all vehicles
+    path_starts: Any  # Ints (vehicle,) where each path table begins
+    neighbors: Any  # Ints (vehicle, list) whom each vehicle coordinates with
+    list_width: int  # [-] length of each such list
+    known: Any  # Ints (list,) whose states matter to this vehicle, in the fleet's order
+    sources: Any  # Ints (list,) whose messages it reads
+    me: int
+    size: int  # [-] vehicles in the fleet
+
+
+OWN = Layout(Setup, DvlReading, Whereabouts, Water, Along, Speech, Correction)
+get_setup, put_setup = OWN.reader(Setup), OWN.writer(Setup)
+get_speed, put_speed = OWN.reader(DvlReading), OWN.writer(DvlReading)
+get_whereabouts, put_whereabouts = OWN.reader(Whereabouts), OWN.writer(Whereabouts)
+get_current, put_current = OWN.reader(Water), OWN.writer(Water)
+get_along, put_along = OWN.reader(Along), OWN.writer(Along)
+get_speech, put_speech = OWN.reader(Speech), OWN.writer(Speech)
+get_correction, put_correction = OWN.reader(Correction), OWN.writer(Correction)
+
+OWN_WIDTH = OWN.width
+
+OTHERS = Layout(Acquaintance)
+get_acquaintance, put_acquaintance = OTHERS.reader(Acquaintance), OTHERS.writer(Acquaintance)
+
+OTHERS_WIDTH = OTHERS.width
+
+# An inbox holds, for each source, whether a message came in this tick, and the last one.
+ENVELOPE = Layout(Report)
+SIGHTING = Layout(Sighting)
+get_head, put_head = ENVELOPE.reader(Report), ENVELOPE.writer(Report)
+get_seen, put_seen = SIGHTING.reader(Sighting), SIGHTING.writer(Sighting)
+SIGHTING_WIDTH = SIGHTING.width
+FLAG = 0  # 1 when the message came in this tick
+HEAD = 1 + ENVELOPE.width  # the flag and the head of a report
+
+
+def inbox_width(size: int) -> int:
+    """Numbers in one inbox entry: flag, report, and a sighting of each vehicle of the fleet."""
+    return HEAD + size * SIGHTING_WIDTH
+
+
+@compiled
+def message_from(heard: Rows, size: int, source: int) -> Rows:
+    """The entry of one source in an inbox."""
+    return at(heard, source * (HEAD + size * SIGHTING_WIDTH))
+
+
+@compiled
+def is_fresh(message: Rows) -> bool:
+    """Whether the message came in this tick."""
+    return load(message, FLAG) > 0.5
+
+
+@compiled
+def head_of(message: Rows) -> Report:
+    """The report of a message."""
+    return get_head(at(message, 1), 0)
+
+
+@compiled
+def sighting_in(message: Rows, vehicle: int) -> Sighting:
+    """What the message says of a vehicle."""
+    return get_seen(at(message, HEAD), vehicle)
+
+
+@compiled
+def path_of(mind: Mind, vehicle: int) -> Rows:
+    """The path table of a vehicle of the fleet."""
+    return at(mind.paths, load(mind.path_starts, vehicle))
+
+
+@compiled
+def neighbors_of(mind: Mind, vehicle: int) -> Any:
+    """The list of those a vehicle coordinates with, after its length."""
+    return at(mind.neighbors, vehicle * mind.list_width)

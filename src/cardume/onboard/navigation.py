@@ -1,0 +1,134 @@
+"""Where am I, how fast, and where on my path."""
+
+from cardume.compiler import Rows, compiled, load, some, where
+from cardume.maths import clip, to_ned
+from cardume.onboard.estimation.current import observe
+from cardume.onboard.estimation.position import estimate_position
+from cardume.onboard.estimation.speed.base import read_shaft
+from cardume.onboard.mind import (
+    LONG_AGO,
+    Along,
+    Mind,
+    Whereabouts,
+    get_along,
+    get_current,
+    get_whereabouts,
+    is_fresh,
+    message_from,
+    path_of,
+    put_along,
+    put_current,
+    put_speed,
+    put_whereabouts,
+    sighting_in,
+)
+from cardume.paths.base import find_reference_point
+from cardume.signals import (
+    NOTHING,
+    DvlReading,
+    Fix,
+    Measured,
+    Motion,
+    NavigationEstimate,
+    PathError,
+    Place,
+    ShaftReading,
+    Water,
+)
+
+SAME = 1e-6  # [s] a fix is newer only beyond rounding
+NEAREST_CENTER = 0.1  # of 1 - c e: nearer the centre of an arc the path's rate has no meaning
+
+
+@compiled
+def speed_through_water(mind: Mind, measured: Measured) -> DvlReading:
+    """Surge and sway [m/s]: from the DVL where there is one, else surge by (37) and no sway."""
+    shaft = read_shaft(mind.book, 0, ShaftReading(measured.shaft_speed))
+    has_dvl = measured.dvl_surge == measured.dvl_surge
+    has_shaft = shaft == shaft
+    surge = where(has_dvl, measured.dvl_surge, where(has_shaft, shaft, 0.0))
+    speed = DvlReading(surge, where(has_dvl, measured.dvl_sway, 0.0))
+    put_speed(mind.own, 0, speed)
+    return speed
+
+
+@compiled
+def believed_motion(mind: Mind, measured: Measured, speed: DvlReading) -> Motion:
+    """How the vehicle believes it moves, with the current of the last tick."""
+    current = get_current(mind.own, 0)
+    return Motion(
+        measured.heading, measured.yaw_rate, speed.surge, speed.sway, current.north, current.east
+    )
+
+
+@compiled
+def navigate(mind: Mind, measured: Measured, heard: Rows, motion: Motion, time: float) -> NavigationEstimate:
+    """The believed position: GNSS where there is a reading, else the newest fix that was heard, else reckoning."""
+    fix = newest_fix(mind, heard, time)
+    by_gnss = measured.gnss_north == measured.gnss_north
+    chosen = where(by_gnss, Fix(measured.gnss_north, measured.gnss_east, measured.gnss_age), fix)
+    position = estimate_position(mind.book, 0, chosen, motion)
+    before = get_whereabouts(mind.own, 0).time_of_fix
+    validity = where(chosen.north == chosen.north, time - chosen.age, before)
+    put_whereabouts(mind.own, 0, Whereabouts(position.north, position.east, validity))
+    return position
+
+
+@compiled
+def newest_fix(mind: Mind, heard: Rows, time: float) -> Fix:
+    """The newest fix of this vehicle among the messages of this tick, unless an even newer one was used."""
+    last = get_whereabouts(mind.own, 0)
+    north, east, valid = last.north, last.east, last.time_of_fix
+    found = valid < LONG_AGO  # nowhere
+    for source in range(load(mind.sources, 0)):
+        message = message_from(heard, mind.size, source)
+        if some(is_fresh(message)):
+            seen = sighting_in(message, mind.me)
+            newer = is_fresh(message) & (seen.time_of_fix > valid + SAME)
+            north, east = where(newer, seen.north, north), where(newer, seen.east, east)
+            valid = where(newer, seen.time_of_fix, valid)
+            found = found | newer
+    return Fix(where(found, north, NOTHING), where(found, east, NOTHING), where(found, time - valid, NOTHING))
+
+
+@compiled
+def observe_current(mind: Mind, position: NavigationEstimate, motion: Motion) -> Water:
+    """The current that explains why position and velocity through the water disagree."""
+    current = observe(mind.book, 0, position, motion)
+    put_current(mind.own, 0, current)
+    return current
+
+
+@compiled
+def locate(mind: Mind, position: NavigationEstimate, motion: Motion, current: Water) -> PathError:
+    """The path as the vehicle sees it, and how fast it comes along: (5)-(8) and (53) corrected.
+
+    gamma' = (V . t) / ((1 - c e) h), V the velocity over ground, t the path's tangent, h the stretch.
+    """
+    found = find_reference_point(mind.book, mind.me, Place(position.north, position.east, path_of(mind, mind.me)))
+    finished = where(found.finished > 0.5, 1.0, get_along(mind.own, 0).finished)
+    error = PathError(
+        found.path_course,
+        found.curvature,
+        found.cross_track,
+        found.along_track,
+        found.path_parameter,
+        found.stretch,
+        found.speed_profile,
+        found.arc_length,
+        finished,
+        motion.surge,
+        found.path,
+    )
+    path_speed = rate_along(error, motion, current)
+    put_along(mind.own, 0, Along(error.cross_track, error.path_parameter, path_speed, finished))
+    return error
+
+
+@compiled
+def rate_along(error: PathError, motion: Motion, current: Water) -> float:
+    """Rate of the coordination state [m/s]."""
+    north, east = to_ned(motion.heading - error.path_course, motion.surge, motion.sway)
+    along, _ = to_ned(-error.path_course, current.north, current.east)
+    room = clip(1.0 - error.curvature * error.cross_track, NEAREST_CENTER, 1e9)
+    return (north + along) / (room * error.stretch)

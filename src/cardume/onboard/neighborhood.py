@@ -1,0 +1,194 @@
+"""What a vehicle knows of the others, what they do meanwhile, and what it tells them."""
+
+from typing import NamedTuple
+
+from cardume.compiler import Rows, at, compiled, load, some, where
+from cardume.maths import to_cartesian, to_ned_3d
+from cardume.onboard.coordination import correct_speed
+from cardume.onboard.estimation.neighbors import predict
+from cardume.onboard.messaging import decide_to_send
+from cardume.onboard.mind import (
+    Acquaintance,
+    Mind,
+    Speech,
+    get_acquaintance,
+    get_along,
+    get_speech,
+    head_of,
+    is_fresh,
+    message_from,
+    neighbors_of,
+    path_of,
+    put_acquaintance,
+    put_speech,
+    sighting_in,
+)
+from cardume.paths.base import find_reference_point
+from cardume.signals import (
+    NOTHING,
+    Disagreement,
+    Measured,
+    NavigationEstimate,
+    NeighborReport,
+    Outbox,
+    PathError,
+    Place,
+    Report,
+)
+
+USBL_WIDTH = 4  # range, azimuth, elevation, age
+
+
+class Said(NamedTuple):
+    """What a vehicle tells the others: a report and, from a vehicle with a USBL head, its acquaintances."""
+
+    report: Report
+    others: Rows
+
+
+@compiled
+def listen(mind: Mind, heard: Rows) -> None:
+    """Note the newest that the messages of this tick say of each vehicle that matters."""
+    for k in range(1, load(mind.known, 0) + 1):
+        vehicle = load(mind.known, k)
+        forget_news(mind, vehicle)
+        for source in range(load(mind.sources, 0)):
+            message = message_from(heard, mind.size, source)
+            if some(is_fresh(message)):
+                note(mind, message, load(mind.sources, source + 1), vehicle)
+
+
+@compiled
+def forget_news(mind: Mind, vehicle: int) -> None:
+    """What was new in the last tick is known now."""
+    known = get_acquaintance(mind.others, vehicle)
+    put_acquaintance(
+        mind.others, vehicle, _updated(known, known.state, known.path_speed, known.time_of_validity, 0.0)
+    )
+
+
+@compiled
+def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
+    """Learn a vehicle's coordination state from a message, its own or a sighting, if that is newer."""
+    known = get_acquaintance(mind.others, vehicle)
+    if sender == vehicle:
+        head = head_of(message)
+        state, speed, valid = head.coordination_state, head.path_speed, head.time_of_validity
+    else:
+        seen = sighting_in(message, vehicle)
+        state, speed, valid = seen.coordination_state, seen.path_speed, seen.time_of_validity
+    newer = is_fresh(message) & (valid > known.time_of_validity)
+    learnt = _updated(known, state, speed, valid, 1.0)
+    put_acquaintance(mind.others, vehicle, where(newer, learnt, known))
+
+
+@compiled
+def _updated(known: Acquaintance, state: float, path_speed: float, valid: float, is_new: float) -> Acquaintance:
+    return Acquaintance(
+        state, path_speed, valid, is_new, known.predicted, known.north, known.east, known.time_of_fix
+    )
+
+
+@compiled
+def look_around(mind: Mind, measured: Measured, position: NavigationEstimate, error: PathError, time: float) -> None:
+    """With a USBL head: turn each new reading into the other's position and coordination state.
+
+    p_j = p_1 + R_1 r, R_1 the measured attitude; gamma_j is the projection of p_j on j's own path.
+    """
+    for vehicle in range(mind.size):
+        reading = at(measured.usbl, vehicle * USBL_WIDTH)
+        age = load(reading, 3)
+        is_new = age == age
+        if some(is_new):
+            ahead, starboard, down = to_cartesian(load(reading, 0), load(reading, 1), load(reading, 2))
+            north, east, _ = to_ned_3d(
+                measured.roll, measured.pitch, measured.heading, ahead, starboard, down
+            )
+            sight(mind, vehicle, is_new, position.north + north, position.east + east, time - age, error)
+
+
+@compiled
+def sight(
+    mind: Mind, vehicle: int, is_new: bool, north: float, east: float, valid: float, error: PathError
+) -> None:
+    """Note where a vehicle was seen, and how far along its path that is."""
+    known = get_acquaintance(mind.others, vehicle)
+    found = find_reference_point(
+        mind.book,
+        vehicle,
+        Place(where(is_new, north, 0.0), where(is_new, east, 0.0), path_of(mind, vehicle)),
+    )
+    speed = where(known.state == known.state, known.path_speed, error.speed_profile)
+    seen = Acquaintance(found.path_parameter, speed, valid, 1.0, known.predicted, north, east, valid)
+    put_acquaintance(mind.others, vehicle, where(is_new, seen, known))
+
+
+@compiled
+def predict_neighbors(mind: Mind, heard: Rows, error: PathError, time: float) -> Disagreement:
+    """Bring what is known of the others up to now, and compare: (53)-(55), (D^-1 L gamma)_i."""
+    listen(mind, heard)
+    for k in range(1, load(mind.known, 0) + 1):
+        vehicle = load(mind.known, k)
+        known = get_acquaintance(mind.others, vehicle)
+        apart = disagreement_of(mind, vehicle, known.predicted, error.path_parameter)
+        has_view = apart.disagreement == apart.disagreement
+        correction = correct_speed(mind.book, vehicle, where(has_view, apart, _agreement(error)))
+        report = NeighborReport(
+            known.is_new,
+            known.state,
+            known.path_speed,
+            time - known.time_of_validity,
+            error.speed_profile,
+            correction,
+        )
+        predicted = predict(mind.book, vehicle, report)
+        put_acquaintance(
+            mind.others,
+            vehicle,
+            Acquaintance(
+                known.state,
+                known.path_speed,
+                known.time_of_validity,
+                known.is_new,
+                where(known.state == known.state, predicted, NOTHING),
+                known.north,
+                known.east,
+                known.time_of_fix,
+            ),
+        )
+    return disagreement_of(mind, mind.me, error.path_parameter, error.path_parameter)
+
+
+@compiled
+def _agreement(error: PathError) -> Disagreement:
+    return Disagreement(error.path_parameter, error.path_parameter, 0.0 * error.path_parameter)
+
+
+@compiled
+def disagreement_of(mind: Mind, vehicle: int, state: float, own_state: float) -> Disagreement:
+    """(D^-1 L gamma)_i: a state less the mean of those the vehicle hears and of whom anything is known."""
+    listed = neighbors_of(mind, vehicle)
+    total, count = 0.0 * own_state, 0.0 * own_state
+    for k in range(1, load(listed, 0) + 1):
+        other = load(listed, k)
+        if other == mind.me:
+            total, count = total + own_state, count + 1.0
+        else:
+            predicted = get_acquaintance(mind.others, other).predicted
+            is_known = predicted == predicted
+            total, count = total + where(is_known, predicted, 0.0), count + where(is_known, 1.0, 0.0)
+    mean = where(count > 0.5, total / where(count > 0.5, count, 1.0), state)
+    return Disagreement(state, mean, state - mean)
+
+
+@compiled
+def report(mind: Mind, measured: Measured, time: float) -> Said:
+    """What to tell the others now, if anything."""
+    along, speech = get_along(mind.own, 0), get_speech(mind.own, 0)
+    outbox = Outbox(time - speech.last_sent, along.coordination_state, along.path_speed, time)
+    sending = decide_to_send(mind.book, 0, outbox)
+    sends = sending > 0.5
+    after = where(sends, Speech(time + 0.0 * speech.sequence, speech.sequence + 1.0), speech)
+    put_speech(mind.own, 0, after)
+    told = Report(sending, after.sequence, time + 0.0 * sending, along.coordination_state, along.path_speed)
+    return Said(told, mind.others)

@@ -1,0 +1,266 @@
+"""From lines and arcs written in a file, rounded, to a chain that is exactly continuous.
+
+A file written to the centimeter has gaps and kinks of that size at its joints.  Kept, every offset
+path would get a corner at each of them.  So the chain is adjusted as a surveyor adjusts a traverse:
+continuous in position, and in course wherever the joint is meant to be smooth, with lengths and
+curvatures chosen by least squares so that it passes as near as possible to every point of the file.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cardume.paths.segment import GeometryError, PathPoint, ReferencePath, Segment, end_of
+from cardume.paths.table import MAX_SEGMENTS
+
+ROUNDING = 0.05  # [m] what a joint may be off and still be meant to be smooth
+SHARPEST_SMOOTH = math.radians(10.0)  # no kink above this is taken for rounding, however short its sides
+WINDOW, LOOKAHEAD = 96, 16  # segments adjusted at once; what lies further ahead no longer matters
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Section:
+    """A line or arc as a file gives it.
+
+    Attributes:
+        start, end: [m] north, east.
+        center: [m] north, east; None for a line.
+        sense: 1 to starboard, -1 to port; 0 for a line.
+        speed: [m/s] v_L; None: the formation's.
+        label: where it was given, such as "line 7".
+    """
+
+    start: Point
+    end: Point
+    center: Point | None = None
+    sense: float = 0.0
+    speed: float | None = None
+    label: str = ""
+
+
+def join(sections: Sequence[Section], rounding: float = ROUNDING) -> ReferencePath:
+    """Join sections into a reference path, absorbing gaps and kinks of rounding size.
+
+    Args:
+        sections: in the order in which they are flown.
+        rounding: [m] the largest shift of any point that counts as rounding.
+
+    Returns:
+        The reference path; joints that are no rounding stay corners.
+
+    Raises:
+        GeometryError: a gap, an arc whose points do not lie on a circle, or sections of no length.
+    """
+    if not 0 < len(sections) <= MAX_SEGMENTS:
+        raise GeometryError(f"the path has {len(sections)} lines and arcs; it needs 1 to {MAX_SEGMENTS}")
+    rough = [_as_segment(section, rounding) for section in sections]
+    for before, after, section in zip(rough, rough[1:], sections[1:], strict=False):
+        gap = _distance((end_of(before).north, end_of(before).east), section.start)
+        if gap > 2.0 * rounding:
+            raise GeometryError(
+                f"{after.label} starts {gap:.6g} m from where {before.label} ends;"
+                f" at most {2.0 * rounding:g} m is taken for rounding: let it start there, or add a line between",
+                after.label,
+            )
+    corners = [_corner(before, after, rounding) for before, after in zip(rough, rough[1:], strict=False)]
+    fitted = _adjust(rough, corners, sections)
+    for segment, section in zip(fitted, sections, strict=True):
+        shift = max(_distance(a, b) for a, b in zip(_marks(segment), _given(section), strict=True))
+        if shift > 2.0 * rounding:
+            raise GeometryError(
+                f"{section.label} does not meet its neighbors smoothly: it had to be moved by {shift:.3g} m,"
+                f" and at most {2.0 * rounding:g} m is taken for rounding: check its points",
+                section.label,
+            )
+    return tuple(fitted)
+
+
+def _adjust(rough: list[Segment], corners: list[float], sections: Sequence[Section]) -> list[Segment]:
+    """Window after window, each going on from the last and looking past its own end, so that time grows with length."""
+    fitted: list[Segment] = []
+    for first in range(0, len(rough), WINDOW):
+        part = slice(first, first + WINDOW + LOOKAHEAD)
+        traverse = _Traverse(rough[part], corners[part], sections[part])
+        if fitted:
+            traverse.hold(end_of(fitted[-1]), is_corner=corners[first - 1] != 0.0)
+        fitted += traverse.adjust()[:WINDOW]
+    return fitted
+
+
+def _as_segment(section: Section, rounding: float) -> Segment:
+    """A section by itself, from its first point."""
+    (north, east), (end_north, end_east) = section.start, section.end
+    if section.center is None:
+        length = _distance(section.start, section.end)
+        if length <= rounding:
+            raise GeometryError(
+                f"{section.label} is a line of {length:.3g} m; it needs a length above {rounding:g} m", section.label
+            )
+        course = math.atan2(end_east - east, end_north - north)
+        return _segment(section, course, 0.0, length)
+    radius = _distance(section.start, section.center)
+    to_end = _distance(section.end, section.center)
+    if min(radius, to_end) <= rounding or abs(radius - to_end) > 2.0 * rounding:
+        raise GeometryError(
+            f"{section.label}: the arc starts {radius:.6g} m from its center and ends {to_end:.6g} m from it;"
+            f" both must be the same radius, above {rounding:g} m",
+            section.label,
+        )
+    if _distance(section.start, section.end) <= 2.0 * rounding:
+        raise GeometryError(
+            f"{section.label}: the arc ends where it starts; write a full circle as two arcs", section.label
+        )
+    out = math.atan2(east - section.center[1], north - section.center[0])
+    out_end = math.atan2(end_east - section.center[1], end_north - section.center[0])
+    angle = (section.sense * (out_end - out)) % (2.0 * math.pi)
+    return _segment(section, out + section.sense * 0.5 * math.pi, section.sense / radius, radius * angle)
+
+
+def _segment(section: Section, course: float, curvature: float, length: float) -> Segment:
+    return Segment(
+        north=section.start[0],
+        east=section.start[1],
+        course=course,
+        curvature=curvature,
+        length=length,
+        speed=section.speed,
+        label=section.label,
+    )
+
+
+def _corner(before: Segment, after: Segment, rounding: float) -> float:
+    """The angle at a joint that is a corner; 0 where rounding of the points explains it."""
+    angle = math.remainder(after.course - end_of(before).course, 2.0 * math.pi)
+    scale = min(min(s.length, 1.0 / abs(s.curvature) if s.curvature else math.inf) for s in (before, after))
+    return 0.0 if abs(angle) <= min(rounding / scale, SHARPEST_SMOOTH) else angle
+
+
+def _distance(one: Point, other: Point) -> float:
+    return math.hypot(one[0] - other[0], one[1] - other[1])
+
+
+def _given(section: Section) -> list[Point]:
+    return [section.start, section.end, *([section.center] if section.center else [])]
+
+
+def _marks(segment: Segment) -> list[Point]:
+    """The points of a segment that a file gives: start, end, centre."""
+    end = end_of(segment)
+    marks = [(segment.north, segment.east), (end.north, end.east)]
+    if segment.curvature:
+        radius = 1.0 / segment.curvature
+        marks.append(
+            (segment.north - radius * math.sin(segment.course), segment.east + radius * math.cos(segment.course))
+        )
+    return marks
+
+
+class _Traverse:
+    """A chain described by as few numbers as it has freedoms, so that it cannot help being continuous.
+
+    The freedoms: first point and course, the lengths, the curvatures of arcs, the angles of corners.
+    """
+
+    def __init__(self, rough: list[Segment], corners: list[float], sections: Sequence[Section]) -> None:
+        self.rough = rough
+        self.is_arc = np.array([s.curvature != 0.0 for s in rough])
+        corners = corners[: len(rough) - 1]
+        self.is_corner = np.array([False, *(angle != 0.0 for angle in corners)])
+        self.given = np.concatenate([_given(section) for section in sections])
+        curvatures = [s.curvature for s in rough if s.curvature]
+        turns = [angle for angle in corners if angle]
+        first = [rough[0].north, rough[0].east, rough[0].course]
+        self.freedoms = np.array([*first, *(s.length for s in rough), *curvatures, *turns])
+        self.held = 0
+
+    def hold(self, place: PathPoint, is_corner: bool) -> None:
+        """Go on where and, unless at a corner, as the part before ended."""
+        turn = math.remainder(place.course - self.freedoms[2], 2.0 * math.pi)
+        self.held = 2 if is_corner else 3
+        self.freedoms[:3] = place.north, place.east, self.freedoms[2] + (0.0 if is_corner else turn)
+
+    def adjust(self) -> list[Segment]:
+        """Gauss-Newton; from rounded points it takes a few steps."""
+        x = self.freedoms.copy()
+        for _ in range(20):
+            misfit = (self.marks(x) - self.given).ravel()
+            slopes = self.slopes(x)
+            step = np.linalg.solve(slopes.T @ slopes, slopes.T @ misfit)
+            x[self.held :] -= step
+            if np.abs(step).max() < 1e-6:
+                break
+        return self.chain(x)
+
+    def slopes(self, x: np.ndarray) -> np.ndarray:
+        """How the marks move with each freedom that is not held, by central differences.
+
+        Args:
+            x: [any] (freedoms,).
+
+        Returns:
+            [any] (2 marks, freedoms that are not held).
+        """
+        columns = []
+        for k in range(self.held, len(x)):
+            nudge = np.zeros(len(x))
+            nudge[k] = 1e-6
+            columns.append(((self.marks(x + nudge) - self.marks(x - nudge)) / 2e-6).ravel())
+        return np.column_stack(columns)
+
+    def _split(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Lengths, curvatures and the course at the start of each segment."""
+        count = len(self.rough)
+        lengths, curvatures, turns = x[3 : 3 + count], np.zeros(count), np.zeros(count)
+        curvatures[self.is_arc] = x[3 + count : 3 + count + self.is_arc.sum()]
+        turns[self.is_corner] = x[len(x) - self.is_corner.sum() :]
+        turned = np.concatenate([[0.0], np.cumsum(lengths * curvatures)[:-1]])
+        return lengths, curvatures, x[2] + turned + np.cumsum(turns)
+
+    def marks(self, x: np.ndarray) -> np.ndarray:
+        """The points that the file gives, where the chain has them.
+
+        Args:
+            x: [any] (freedoms,).
+
+        Returns:
+            [m] (marks, 2) north, east.
+        """
+        lengths, curvatures, courses = self._split(x)
+        curved = self.is_arc
+        radii = 1.0 / np.where(curved, curvatures, 1.0)
+        ahead = np.where(curved, radii * np.sin(curvatures * lengths), lengths)
+        aside = np.where(curved, 2.0 * radii * np.sin(0.5 * curvatures * lengths) ** 2, 0.0)
+        unit = np.column_stack([np.cos(courses), np.sin(courses)])
+        across = np.column_stack([-unit[:, 1], unit[:, 0]])
+        nodes = x[:2] + np.cumsum(ahead[:, None] * unit + aside[:, None] * across, axis=0)
+        starts = np.vstack([x[:2], nodes[:-1]])
+        marks = np.stack([starts, nodes, starts + radii[:, None] * across], axis=1)
+        wanted = np.column_stack([np.ones_like(curved), np.ones_like(curved), curved])
+        return marks[wanted.astype(bool)]
+
+    def chain(self, x: np.ndarray) -> list[Segment]:
+        """The segments.
+
+        Args:
+            x: [any] (freedoms,).
+        """
+        lengths, curvatures, courses = self._split(x)
+        path: list[Segment] = []
+        north, east = float(x[0]), float(x[1])
+        for rough, length, curvature, course in zip(self.rough, lengths, curvatures, courses, strict=True):
+            path.append(
+                replace(
+                    rough,
+                    north=north,
+                    east=east,
+                    course=float(course),
+                    curvature=float(curvature),
+                    length=float(length),
+                )
+            )
+            north, east, _ = end_of(path[-1])
+        return path

@@ -1,0 +1,228 @@
+"""Orthogonal projection: the point of the path that a vehicle is abeam of.
+
+Lines and arcs are one formula.  In the axes of a segment's start (x ahead, y to starboard), with
+curvature c,
+
+    e = (2 y - c (x^2 + y^2)) / (1 + sqrt((c x)^2 + (1 - c y)^2))
+    s = atan2(|c| x, 1 - c y) / |c|,   s = x for a line
+
+e is sigma (R - rho), eq. (52) with its missing -R and the sense of turn, written so that nothing
+cancels when the arc is nearly straight.  s is an angle, known up to whole laps: the lap is the one
+nearest to where the vehicle was, so gamma never wraps.
+"""
+
+from typing import NamedTuple
+
+from cardume.compiler import Rows, compiled, load, some, where
+from cardume.maths import atan2, clip, hypot, sincos, unwrap_near, wrap_angle
+from cardume.paths.base import reference_point_law
+from cardume.paths.table import (
+    AHEAD,
+    ARC_START,
+    COS_COURSE,
+    CURVATURE,
+    LENGTH,
+    NUM_SEGMENTS,
+    REFERENCE_RATE,
+    REFERENCE_START,
+    SIN_COURSE,
+    SPEED,
+    START_COURSE,
+    START_EAST,
+    START_NORTH,
+    STRETCH,
+    PathPlace,
+    segment_at,
+    segment_value,
+)
+from cardume.signals import PathError, Place
+
+MOVES = 4  # segments that a vehicle may pass in one tick; a jump over more takes several ticks
+AT_CENTER = 1e-9  # radii from an arc's centre within which every point of the arc is equally near
+
+
+class Foot(NamedTuple):
+    """The projection onto one segment, extended at both ends."""
+
+    segment: float  # [-]
+    along: float  # [m] from the segment's start
+    length: float  # [m] of the segment
+    cross_track: float  # [m] > 0 to starboard
+    course: float  # [rad]
+
+
+class PointAhead(NamedTuple):
+    """A point of the path."""
+
+    north: float  # [m]
+    east: float  # [m]
+    course: float  # [rad] (-pi, pi]
+    sin_course: float  # [-]
+    cos_course: float  # [-]
+
+
+@compiled
+def foot_on(place: Place, segment: float, last: float, arc_length: float) -> Foot:
+    """Project onto one segment.
+
+    Args:
+        place: position and path.
+        segment: [-] its number.
+        last: [-] number of the last one.
+        arc_length: [m] where the vehicle was: the lap of an arc is the one nearest to it.
+    """
+    path = place.path
+    sin_course, cos_course = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
+    c, length = segment_value(path, segment, CURVATURE), segment_value(path, segment, LENGTH)
+    north = place.north - segment_value(path, segment, START_NORTH)
+    east = place.east - segment_value(path, segment, START_EAST)
+    x = north * cos_course + east * sin_course
+    y = east * cos_course - north * sin_course
+    to_center = hypot(c * x, 1.0 - c * y)  # in radii; 1 for a line
+    cross_track = (2.0 * y - c * (x * x + y * y)) / (1.0 + to_center)
+    along, course = x, segment_value(path, segment, START_COURSE)
+    curved = c != 0.0
+    if some(curved):
+        turning = where(curved, abs(c), 1.0)
+        was = arc_length - segment_value(path, segment, ARC_START)
+        was = where((segment > 0.0) & (was < 0.0), 0.0, where((segment < last) & (was > length), length, was))
+        turned = where(to_center > AT_CENTER, atan2(turning * x, 1.0 - c * y), turning * was)
+        along = where(curved, unwrap_near(turned, turning * was) / turning, x)
+        course = course + where(curved, where(c > 0.0, turned, -turned), 0.0)
+    return Foot(segment, along, length, cross_track, course)
+
+
+@compiled
+def find_foot(place: Place, memory: PathPlace) -> Foot:
+    """Project onto the segment where the vehicle is now, starting from where it was.
+
+    It goes on to the next segment past the end of one, and back before its start.  On the outer side
+    of a corner both ask to be left: then it stays on the later one.
+
+    Args:
+        place: position and path.
+        memory: where the vehicle was.
+    """
+    last = load(place.path, NUM_SEGMENTS) - 1.0
+    foot = foot_on(place, clip(memory.segment, 0.0, where(last > 0.0, last, 0.0)), last, memory.arc_length)
+    may_return = foot.segment >= 0.0
+    for _ in range(MOVES):
+        onward = (foot.along > foot.length) & (foot.segment < last)
+        back = (foot.along < 0.0) & (foot.segment > 0.0) & may_return
+        may_return = may_return & (foot.along <= foot.length)
+        moved = onward | back
+        if some(moved):
+            segment = foot.segment + where(onward, 1.0, where(back, -1.0, 0.0))
+            foot = where(moved, foot_on(place, segment, last, memory.arc_length), foot)
+    return foot
+
+
+@compiled
+def formation_speed(path: Rows, segment: float, path_parameter: float) -> float:
+    """v_L [m/s] where the formation is: that of the segment, unless the vehicle is ahead of or behind it.
+
+    Args:
+        path: (n,) path table.
+        segment: [-] where the vehicle is.
+        path_parameter: [m] where the formation is.
+    """
+    ahead = load(path, AHEAD)
+    if some(ahead != 0.0):
+        segment = where(ahead != 0.0, segment_at(path, path_parameter, REFERENCE_START), segment)
+    return segment_value(path, segment, SPEED)
+
+
+@compiled
+def project(place: Place, memory: PathPlace) -> tuple[PathError, PathPlace]:
+    """Compare a vehicle with its path at the point it is abeam of.
+
+    Exact on lines and arcs of both senses at any distance; before the start and past the end the first
+    and last segments go on, arcs as their circle.  At an arc's centre the angle stays as it was.  Within
+    the corner of a sharp turn gamma waits at the corner.  gamma jumps only where the nearest point
+    does: beyond an arc's centre, and on the inner side of a corner.
+
+    Args:
+        place: position and path.
+        memory: where on the path the vehicle was.
+
+    Returns:
+        The path error, its `speed` left at 0, and where on the path the vehicle is.
+    """
+    path, foot = place.path, find_foot(place, memory)
+    last = load(path, NUM_SEGMENTS) - 1.0
+    segment = foot.segment
+    # Only a corner leaves the foot beyond an inner end.
+    along = where((segment > 0.0) & (foot.along < 0.0), 0.0, foot.along)
+    along = where((segment < last) & (along > foot.length), foot.length, along)
+    arc_length = segment_value(path, segment, ARC_START) + along
+    gamma = segment_value(path, segment, REFERENCE_START) + along * segment_value(path, segment, REFERENCE_RATE)
+    path_parameter = gamma - load(path, AHEAD)
+    error = PathError(
+        wrap_angle(foot.course),
+        segment_value(path, segment, CURVATURE),
+        foot.cross_track,
+        0.0 * along,
+        path_parameter,
+        segment_value(path, segment, STRETCH),
+        formation_speed(path, segment, path_parameter),
+        arc_length,
+        where((segment >= last) & (along >= foot.length), 1.0, 0.0),
+        0.0 * along,
+        path,
+    )
+    # A position that is not a number must not be remembered.
+    return error, PathPlace(segment, where(arc_length == arc_length, arc_length, memory.arc_length))
+
+
+@compiled
+def point_at(path: Rows, arc_length: float) -> PointAhead:
+    """The point of a vehicle's own path at an arc length, exact, and extended beyond both ends.
+
+    Args:
+        path: (n,) path table.
+        arc_length: [m] on the own path.
+
+    Returns:
+        Position [m], course [rad] in (-pi, pi], and its sine and cosine.
+    """
+    segment = segment_at(path, arc_length, ARC_START)
+    s = arc_length - segment_value(path, segment, ARC_START)
+    c = segment_value(path, segment, CURVATURE)
+    sin_start, cos_start = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
+    # 1 - cos loses digits where an arc is nearly straight: half angles
+    turned = wrap_angle(c * s)
+    sin_half, cos_half = sincos(0.5 * turned)
+    curved = c != 0.0
+    diameter = 2.0 / where(curved, c, 1.0)
+    x = where(curved, diameter * sin_half * cos_half, s)
+    y = where(curved, diameter * sin_half * sin_half, 0.0)
+    sin_turned, cos_turned = 2.0 * sin_half * cos_half, 1.0 - 2.0 * sin_half * sin_half
+    return PointAhead(
+        segment_value(path, segment, START_NORTH) + x * cos_start - y * sin_start,
+        segment_value(path, segment, START_EAST) + x * sin_start + y * cos_start,
+        wrap_angle(segment_value(path, segment, START_COURSE) + turned),
+        sin_start * cos_turned + cos_start * sin_turned,
+        cos_start * cos_turned - sin_start * sin_turned,
+    )
+
+
+@reference_point_law
+def projection(place: Place, memory: PathPlace) -> tuple[PathError, PathPlace]:
+    """Compare the vehicle with the point of its path that it is abeam of; see `project`.
+
+    e = sigma (R - rho) on an arc, s1 = 0, gamma = gamma_start + (s - s_start) / h - ahead
+
+    with sigma = 1 for a turn to starboard, rho the distance to the arc's center, s the arc length on
+    the vehicle's own path and h its stretch.
+
+    Args:
+        place: position [m] and path table of the vehicle.
+        memory: where on its path it was.
+
+    Returns:
+        The path error (its `speed` is the agent's to fill in) and the next memory.
+
+    Source: paper eqs. (5)-(8) with s1 = 0 and c = sigma / R; (50)-(52), in meters, any sense of turn,
+    the angle unwrapped, and the -R that (52) lost.
+    """
+    return project(place, memory)

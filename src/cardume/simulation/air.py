@@ -1,0 +1,129 @@
+"""Messages in the water: sent, delayed, lost, heard.
+
+Each sender has a few slots for messages that are under way; each link (a listener and one of its
+sources) knows when the message of each slot arrives.
+"""
+
+from cardume.compiler import Rows, at, compiled, load, some, store, where
+from cardume.maths import hypot
+from cardume.maths.random import Key, uniforms
+from cardume.onboard.mind import (
+    FLAG,
+    HEAD,
+    get_acquaintance,
+    get_seen,
+    get_setup,
+    head_of,
+    put_head,
+    put_seen,
+)
+from cardume.onboard.neighborhood import Said
+from cardume.signals import NOTHING, Link, Sighting
+from cardume.simulation.fleet import Fleet, book_of, get_vessel, sources_of
+from cardume.simulation.recording import write_message
+from cardume.simulation.score import note_heard, note_sent
+from cardume.simulation.sensing import LINK, key_of
+from cardume.world.acoustics.base import propagate
+
+NEVER = 1e300  # [s]
+
+
+@compiled
+def arrived(fleet: Fleet, listener: int, time: float) -> Rows:
+    """Bring a listener's inbox up to now and return it."""
+    sources = sources_of(fleet, listener)
+    for source in range(load(sources, 0)):
+        link = listener * fleet.air.widest + source
+        store(at(fleet.air.inbox, link * fleet.air.messages), FLAG, 0.0)
+        if some(load(fleet.air.due, link) <= time):
+            collect(fleet, listener, link, load(sources, source + 1), time)
+    return at(fleet.air.inbox, listener * fleet.air.widest * fleet.air.messages)
+
+
+@compiled
+def collect(fleet: Fleet, listener: int, link: int, sender: int, time: float) -> None:
+    """Move what has arrived on a link into the inbox; of two, the one sent later."""
+    message = at(fleet.air.inbox, link * fleet.air.messages)
+    arrivals = at(fleet.air.arrivals, link * fleet.air.slots)
+    following = 0.0 * load(message, FLAG) + NEVER
+    for slot in range(fleet.air.slots):
+        arrival = load(arrivals, slot)
+        here = arrival <= time
+        if some(here):
+            sent = message_in(fleet, sender, slot)
+            note_heard(fleet, listener, here, time - head_of(sent).time_of_validity)
+            copy_if_newer(message, sent, here, fleet.air.messages)
+            store(arrivals, slot, where(here, NEVER, arrival))
+        waiting = where(here, NEVER, arrival)
+        following = where(waiting < following, waiting, following)
+    store(fleet.air.due, link, following)
+
+
+@compiled
+def message_in(fleet: Fleet, sender: int, slot: int) -> Rows:
+    """A message under way."""
+    return at(fleet.air.outbox, (sender * fleet.air.slots + slot) * fleet.air.messages)
+
+
+@compiled
+def copy_if_newer(message: Rows, sent: Rows, here: bool, width: int) -> None:
+    """Copy a message into an inbox entry unless a later one has come in this very tick."""
+    newer = here & ((load(message, FLAG) < 0.5) | (head_of(sent).sequence > head_of(message).sequence))
+    fresh = where(newer, 1.0, load(message, FLAG))
+    for k in range(width):
+        store(message, k, where(newer, load(sent, k), load(message, k)))
+    store(message, FLAG, fresh)
+
+
+@compiled
+def speak(fleet: Fleet, sender: int, said: Said) -> None:
+    """Put what a vehicle says in this tick, if anything, into the water."""
+    sends = said.report.sending > 0.5
+    store(fleet.air.sending, sender, said.report.sending)
+    if some(sends):
+        count = load(fleet.air.sent, sender)
+        store(fleet.air.sent, sender, count + 1)
+        message = message_in(fleet, sender, count % fleet.air.slots)
+        put_head(at(message, 1), 0, where(sends, said.report, head_of(message)))
+        tells = sends & (get_setup(fleet.minds, sender).shares_sightings > 0.5)
+        for other in range(fleet.size):
+            known = get_acquaintance(said.others, other)
+            seen = Sighting(
+                known.north, known.east, known.time_of_fix, known.state, known.path_speed, known.time_of_validity
+            )
+            put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
+        note_sent(fleet, sender, sends)
+
+
+@compiled
+def carry(fleet: Fleet, time: float, now: int) -> None:
+    """Let sound travel: decide for every message sent in this tick when, and whether, each link delivers it."""
+    for listener in range(fleet.size):
+        sources = sources_of(fleet, listener)
+        for source in range(load(sources, 0)):
+            sender = load(sources, source + 1)
+            if some(load(fleet.air.sending, sender) > 0.5):
+                transmit(fleet, sender, listener, listener * fleet.air.widest + source, time, now)
+
+
+@compiled
+def transmit(fleet: Fleet, sender: int, listener: int, link: int, time: float, now: int) -> None:
+    """One message on its way to one listener; each pair of vehicles has its own draws."""
+    sends = load(fleet.air.sending, sender) > 0.5
+    here, there = get_vessel(fleet.vehicles, sender), get_vessel(fleet.vehicles, listener)
+    level = hypot(there.north - here.north, there.east - here.east)
+    own, others = key_of(fleet, listener, LINK), key_of(fleet, sender, LINK)
+    pair = Key(own.seed_low, own.seed_high, own.stream, own.vehicle_low, others.vehicle_low)
+    draw_1, draw_2, _, _ = uniforms(pair, now)
+    slant = Link(hypot(level, there.depth - here.depth), draw_1, draw_2)
+    arrival = propagate(book_of(fleet, listener, fleet.tick), sender, slant)
+    delivered = arrival.delivered > 0.5
+    slot = (load(fleet.air.sent, sender) - 1) % fleet.air.slots
+    arrives = where(delivered, time + arrival.delay, NEVER)
+    row = link * fleet.air.slots + slot
+    store(fleet.air.arrivals, row, where(sends, arrives, load(fleet.air.arrivals, row)))
+    due = load(fleet.air.due, link)
+    store(fleet.air.due, link, where(sends & (arrives < due), arrives, due))
+    validity = head_of(message_in(fleet, sender, slot)).time_of_validity
+    received, lost = where(delivered, arrives, NOTHING), where(delivered, 0.0, 1.0)
+    write_message(fleet, time, received, sender, listener, lost, validity)

@@ -1,0 +1,285 @@
+"""All of one mission's tables, as Python hands them over and as compiled code sees them.
+
+`Tables` holds numpy arrays, `Fleet` the same as rows.  One mission has arrays of shape (n,); eight
+missions in lanes have (n, 8).  Whole numbers are the same in all lanes.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cardume.compiler import Layout, Rows, at, compiled, load, rows_of
+from cardume.laws import COLUMNS, FAMILIES, LawBook
+from cardume.maths.random import Key
+from cardume.onboard.mind import OTHERS_WIDTH, OWN_WIDTH, Mind
+from cardume.paths.table import PathPlace
+from cardume.signals import Command, Measured, Reference, VesselState, Water
+
+HANDLES = len(FAMILIES) * COLUMNS
+
+
+class Timing(NamedTuple):
+    """When a sensor samples; an absent one never does."""
+
+    next_sample: float = np.inf  # [ticks] when the next reading is delivered
+    period: float = 1.0  # [ticks]
+    latency: float = 0.0  # [ticks]
+
+
+class OnPath(NamedTuple):
+    """The truth about a vehicle and its path."""
+
+    cross_track: float = 0.0  # [m]
+    along_track: float = 0.0  # [m]
+    path_course: float = 0.0  # [rad]
+    curvature: float = 0.0  # [1/m]
+    coordination_state: float = 0.0  # [m]
+    finished: float = 0.0  # [-] 1 once past the end
+
+
+class Held(NamedTuple):
+    """What the sensors that hold their last value said; the fields of `Measured` without the fixes."""
+
+    heading: float = np.nan  # [rad]
+    yaw_rate: float = np.nan  # [rad/s]
+    roll: float = np.nan  # [rad]
+    pitch: float = np.nan  # [rad]
+    depth: float = np.nan  # [m]
+    heave: float = 0.0  # [m/s] from the last two depths
+    shaft_speed: float = np.nan  # [rad/s]
+    dvl_surge: float = np.nan  # [m/s]
+    dvl_sway: float = np.nan  # [m/s]
+
+
+class Satellite(NamedTuple):
+    """The GNSS reading of this tick."""
+
+    north: float = np.nan  # [m]
+    east: float = np.nan  # [m]
+    age: float = np.nan  # [s]
+
+
+VEHICLE = Layout(VesselState, Water, Reference, Command, PathPlace, OnPath, Held, Satellite)
+get_vessel, put_vessel = VEHICLE.reader(VesselState), VEHICLE.writer(VesselState)
+get_water, put_water = VEHICLE.reader(Water), VEHICLE.writer(Water)
+get_reference, put_reference = VEHICLE.reader(Reference), VEHICLE.writer(Reference)
+get_command, put_command = VEHICLE.reader(Command), VEHICLE.writer(Command)
+get_true_place, put_true_place = VEHICLE.reader(PathPlace), VEHICLE.writer(PathPlace)
+get_on_path, put_on_path = VEHICLE.reader(OnPath), VEHICLE.writer(OnPath)
+get_held, put_held = VEHICLE.reader(Held), VEHICLE.writer(Held)
+get_satellite, put_satellite = VEHICLE.reader(Satellite), VEHICLE.writer(Satellite)
+
+SENSORS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed")
+STREAMS = (*SENSORS, "link")  # each with its own random numbers
+NUM_SENSORS, NUM_STREAMS = len(SENSORS), len(STREAMS)
+TIMING, KEY = Layout(Timing), Layout(Key)
+get_timing, put_timing = TIMING.reader(Timing), TIMING.writer(Timing)
+get_key, put_key = KEY.reader(Key), KEY.writer(Key)
+
+SEEN = Layout(VesselState, Water)  # what a sensor with a latency looks back at
+
+
+class Air(NamedTuple):
+    """Messages in the water."""
+
+    outbox: Rows  # (vehicle, slot, message) as sent
+    sending: Rows  # (vehicle,) 1 when it spoke in this tick
+    sent: Any  # Ints (vehicle,) messages so far
+    due: Rows  # (link,) [s] when the next message arrives
+    arrivals: Rows  # (link, slot) [s] when each does; inf: never
+    inbox: Rows  # (link, message) what was heard last
+    slots: int  # [-] messages of one sender that can be under way at once
+    messages: int  # [-] numbers in a message
+    widest: int  # [-] links per listener, at most
+
+
+class Fleet(NamedTuple):
+    """One mission, or eight, as compiled code sees it."""
+
+    size: int
+    substeps: int  # [-] plant steps per tick
+    tick: float  # [s]
+    handles: Any  # Ints (vehicle, family, 4)
+    gains: Rows  # (vehicle, gains)
+    gains_width: int
+    memory: Rows  # (vehicle, memory)
+    memory_width: int
+    vehicles: Rows  # (vehicle, the records of VEHICLE)
+    minds: Rows  # (vehicle, the records of OWN)
+    others: Rows  # (vehicle, vehicle, Acquaintance)
+    usbl: Rows  # (vehicle, vehicle, 4) readings of this tick
+    timings: Rows  # (vehicle, sensor, Timing)
+    keys: Rows  # (vehicle, stream, Key), then the fleet's own
+    past: Rows  # (vehicle, tick, SEEN)
+    past_size: int  # [ticks] 1: no sensor looks back
+    paths: Rows
+    path_starts: Any  # Ints (vehicle,)
+    graph: Any  # Ints (vehicle, list) neighbors, then known, then sources
+    list_width: int
+    field: Rows  # gridded current, the same in all lanes
+    air: Air
+    scores: Rows  # (vehicle, the records of SCORES)
+    fleet_score: Rows  # FleetScore
+    histograms: Rows  # (vehicle, metric, bin)
+    trouble: Rows  # code, vehicle, time of the first number that is not one
+    log: Rows  # (record, vehicle, channel)
+    predictions: Rows  # (record, vehicle, vehicle)
+    messages: Rows  # (message, column)
+    counts: Any  # Ints: records, messages written; how many there is room for; ticks per record
+    requirements: Rows  # transient threshold and hold, swath width
+
+
+class Whole(NamedTuple):
+    """The whole numbers of a mission, the same in all lanes."""
+
+    size: int
+    substeps: int
+    gains_width: int
+    memory_width: int
+    past_size: int
+    list_width: int
+    slots: int
+    message_width: int
+    widest: int
+
+
+class Tables(NamedTuple):
+    """The same as numpy arrays; field by field what `Fleet` and `Air` hold."""
+
+    whole: Whole
+    tick: float
+    handles: np.ndarray
+    gains: np.ndarray
+    memory: np.ndarray
+    vehicles: np.ndarray
+    minds: np.ndarray
+    others: np.ndarray
+    usbl: np.ndarray
+    timings: np.ndarray
+    keys: np.ndarray
+    past: np.ndarray
+    paths: np.ndarray
+    path_starts: np.ndarray
+    graph: np.ndarray
+    field: np.ndarray
+    outbox: np.ndarray
+    sending: np.ndarray
+    sent: np.ndarray
+    due: np.ndarray
+    arrivals: np.ndarray
+    inbox: np.ndarray
+    scores: np.ndarray
+    fleet_score: np.ndarray
+    histograms: np.ndarray
+    trouble: np.ndarray
+    log: np.ndarray
+    predictions: np.ndarray
+    messages: np.ndarray
+    counts: np.ndarray
+    requirements: np.ndarray
+
+
+@compiled
+def fleet_of(tables: Tables) -> Fleet:
+    """The tables as rows; the arrays must stay alive meanwhile."""
+    whole = tables.whole
+    air = Air(
+        rows_of(tables.outbox),
+        rows_of(tables.sending),
+        rows_of(tables.sent),
+        rows_of(tables.due),
+        rows_of(tables.arrivals),
+        rows_of(tables.inbox),
+        whole.slots,
+        whole.message_width,
+        whole.widest,
+    )
+    return Fleet(
+        whole.size,
+        whole.substeps,
+        tables.tick,
+        rows_of(tables.handles),
+        rows_of(tables.gains),
+        whole.gains_width,
+        rows_of(tables.memory),
+        whole.memory_width,
+        rows_of(tables.vehicles),
+        rows_of(tables.minds),
+        rows_of(tables.others),
+        rows_of(tables.usbl),
+        rows_of(tables.timings),
+        rows_of(tables.keys),
+        rows_of(tables.past),
+        whole.past_size,
+        rows_of(tables.paths),
+        rows_of(tables.path_starts),
+        rows_of(tables.graph),
+        whole.list_width,
+        rows_of(tables.field),
+        air,
+        rows_of(tables.scores),
+        rows_of(tables.fleet_score),
+        rows_of(tables.histograms),
+        rows_of(tables.trouble),
+        rows_of(tables.log),
+        rows_of(tables.predictions),
+        rows_of(tables.messages),
+        rows_of(tables.counts),
+        rows_of(tables.requirements),
+    )
+
+
+@compiled
+def book_of(fleet: Fleet, vehicle: int, dt: float) -> LawBook:
+    """The laws of one vehicle, for steps of dt [s]."""
+    return LawBook(
+        at(fleet.handles, vehicle * HANDLES),
+        at(fleet.gains, vehicle * fleet.gains_width),
+        at(fleet.memory, vehicle * fleet.memory_width),
+        dt,
+    )
+
+
+@compiled
+def mind_of(fleet: Fleet, vehicle: int) -> Mind:
+    """What a vehicle decides with: nothing of the truth is in it."""
+    lists = fleet.size * fleet.list_width
+    return Mind(
+        book_of(fleet, vehicle, fleet.tick),
+        at(fleet.minds, vehicle * OWN_WIDTH),
+        at(fleet.others, vehicle * fleet.size * OTHERS_WIDTH),
+        fleet.paths,
+        fleet.path_starts,
+        fleet.graph,
+        fleet.list_width,
+        at(fleet.graph, lists + vehicle * fleet.list_width),
+        sources_of(fleet, vehicle),
+        vehicle,
+        fleet.size,
+    )
+
+
+@compiled
+def sources_of(fleet: Fleet, vehicle: int) -> Any:
+    """The list of those whose messages a vehicle reads, after its length."""
+    return at(fleet.graph, 2 * fleet.size * fleet.list_width + vehicle * fleet.list_width)
+
+
+@compiled
+def measured_of(fleet: Fleet, vehicle: int) -> Measured:
+    """All that a vehicle's sensors say in this tick."""
+    held, satellite = get_held(fleet.vehicles, vehicle), get_satellite(fleet.vehicles, vehicle)
+    return Measured(
+        held.heading,
+        held.yaw_rate,
+        held.roll,
+        held.pitch,
+        held.depth,
+        held.shaft_speed,
+        held.dvl_surge,
+        held.dvl_sway,
+        satellite.north,
+        satellite.east,
+        satellite.age,
+        at(fleet.usbl, vehicle * fleet.size * 4),
+    )

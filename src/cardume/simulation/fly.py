@@ -1,0 +1,104 @@
+"""Fly a plan: in slices, so that it can be watched and stopped, or many plans on a thread pool."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from cardume.compiler import WIDTH
+from cardume.simulation.engine import advance
+from cardume.simulation.fleet import Tables
+from cardume.simulation.plan import Plan
+from cardume.simulation.tables import join, lane, make_tables
+from cardume.simulation.tick import CODE, FINE, TIME, VEHICLE
+
+SLICE = 1000  # ticks between two looks at whether to stop: some milliseconds
+SIGNALS = {1.0: "state", 2.0: "current", 3.0: "reference", 4.0: "position estimate"}
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """The first number that was not one."""
+
+    vehicle: str
+    signal: str
+    time: float  # [s]
+
+
+@dataclass(frozen=True)
+class Flown:
+    """A mission after its flight.
+
+    Attributes:
+        plan: what was flown.
+        tables: as the engine left them; vehicles in the order of `plan.order`.
+        ticks: how many were flown.
+        trouble: why it ended early, if a number was not one.
+        stopped: whether it was asked to stop.
+    """
+
+    plan: Plan
+    tables: Tables
+    ticks: int
+    trouble: Trouble | None = None
+    stopped: bool = False
+
+
+def fly(
+    plan: Plan,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> Flown:
+    """Fly one mission.
+
+    Args:
+        plan: the mission.
+        progress: called with ticks flown and ticks in all.
+        should_stop: asked every few milliseconds.
+
+    Returns:
+        The mission after its flight, whole or as far as it came.
+    """
+    tables, now, total = make_tables(plan), 0, plan.num_ticks
+    while now < total:
+        if should_stop():
+            return Flown(plan, tables, now, stopped=True)
+        stop = min(now + SLICE, total)
+        now = int(advance(tables, now, stop))
+        progress(now, total)
+        if trouble := trouble_in(plan, tables):
+            return Flown(plan, tables, now, trouble)
+    return Flown(plan, tables, now)
+
+
+def fly_batch(plans: Sequence[Plan], threads: int = 2, lanes: bool = False) -> list[Flown]:
+    """Fly many missions on a pool of threads; the bits are those of `fly`, whatever the number of threads.
+
+    Args:
+        plans: the missions; for lanes, of the same laws, sizes and lengths.
+        threads: [-] how many at once.
+        lanes: [-] fly eight in one SIMD register each.
+
+    Returns:
+        The missions after their flight, in order.
+    """
+    if lanes:
+        groups = [plans[k : k + WIDTH] for k in range(0, len(plans), WIDTH)]
+        with ThreadPoolExecutor(threads) as pool:
+            return [flown for group in pool.map(_fly_lanes, groups) for flown in group]
+    with ThreadPoolExecutor(threads) as pool:
+        return list(pool.map(fly, plans))
+
+
+def _fly_lanes(plans: Sequence[Plan]) -> list[Flown]:
+    joined = join([make_tables(plan, lanes=True) for plan in plans])
+    ticks = int(advance(joined, 0, plans[0].num_ticks))
+    singles = [lane(joined, k) for k in range(len(plans))]
+    return [Flown(p, t, ticks, trouble_in(p, t)) for p, t in zip(plans, singles, strict=True)]
+
+
+def trouble_in(plan: Plan, tables: Tables) -> Trouble | None:
+    """The first number that was not one, by name."""
+    if tables.trouble[CODE] == FINE:
+        return None
+    vehicle = plan.vehicles[plan.order[int(tables.trouble[VEHICLE])]].name
+    return Trouble(vehicle, SIGNALS[tables.trouble[CODE]], float(tables.trouble[TIME]))

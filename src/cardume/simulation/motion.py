@@ -1,0 +1,49 @@
+"""Motion: autopilots steer and hulls move, at the plant step, between two ticks."""
+
+from cardume.compiler import compiled, where
+from cardume.onboard.control.base import steer
+from cardume.onboard.mind import get_speed
+from cardume.signals import Feedback, Reference, VesselState, Water
+from cardume.simulation.fleet import (
+    Fleet,
+    Held,
+    book_of,
+    get_held,
+    get_vessel,
+    put_command,
+)
+from cardume.vehicles.base import step_vehicle
+
+
+@compiled
+def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water) -> VesselState:
+    """Let one vehicle follow its reference for one tick, in the water around it.
+
+    Between ticks the autopilot sees the measured values of the tick, carried on by the measured rates.
+    """
+    dt = fleet.tick / fleet.substeps
+    book = book_of(fleet, vehicle, dt)
+    held = get_held(fleet.vehicles, vehicle)
+    vessel = get_vessel(fleet.vehicles, vehicle)
+    surge = get_speed(fleet.minds, vehicle).surge
+    for step in range(fleet.substeps):
+        command = steer(book, 0, feedback_of(held, surge, reference, step * dt))
+        vessel = step_vehicle(book, 0, vessel, command, reference, water)
+        put_command(fleet.vehicles, vehicle, command)
+    return vessel
+
+
+@compiled
+def feedback_of(held: Held, surge: float, reference: Reference, ahead: float) -> Feedback:
+    """What the autopilot sees `ahead` seconds after the tick."""
+    yaw_rate = where(held.yaw_rate == held.yaw_rate, held.yaw_rate, 0.0)
+    return Feedback(
+        held.heading + yaw_rate * ahead,
+        yaw_rate,
+        surge,
+        held.depth + held.heave * ahead,
+        held.heave,
+        reference.heading,
+        reference.speed,
+        reference.depth,
+    )

@@ -1,0 +1,153 @@
+"""The log: one record of the fleet per log period, and every message."""
+
+from typing import NamedTuple
+
+from cardume.compiler import Layout, at, compiled, load, store
+from cardume.maths import atan2, hypot, to_ned
+from cardume.onboard.mind import (
+    OTHERS_WIDTH,
+    get_acquaintance,
+    get_along,
+    get_correction,
+    get_current,
+    get_whereabouts,
+)
+from cardume.simulation.fleet import Fleet, get_on_path, get_reference, get_vessel, get_water
+
+
+class Truth(NamedTuple):
+    """What is true of a vehicle, as it is logged."""
+
+    north: float
+    east: float
+    depth: float
+    heading: float
+    surge: float
+    sway: float
+    yaw_rate: float
+    course: float
+    speed: float
+    current_north: float
+    current_east: float
+    cross_track: float
+    along_track: float
+    path_course: float
+    curvature: float
+    coordination_state: float
+    shaft_speed: float
+    thrust: float
+    yaw_moment: float
+
+
+class Thought(NamedTuple):
+    """What it believes and wants, as it is logged."""
+
+    north_estimate: float
+    east_estimate: float
+    current_north_estimate: float
+    current_east_estimate: float
+    cross_track_estimate: float
+    coordination_state_estimate: float
+    course_desired: float
+    heading_desired: float
+    speed_desired: float
+    speed_correction: float
+
+
+class MessageRow(NamedTuple):
+    """One message to one receiver."""
+
+    time_sent: float
+    time_received: float
+    sender: float
+    receiver: float
+    lost: float
+    time_of_validity: float
+
+
+LOG, MESSAGE_LOG = Layout(Truth, Thought), Layout(MessageRow)
+CHANNELS = (*Truth._fields, *Thought._fields)
+put_truth, put_thought, put_message = LOG.writer(Truth), LOG.writer(Thought), MESSAGE_LOG.writer(MessageRow)
+RECORDS, MESSAGES, RECORD_ROOM, MESSAGE_ROOM, TICKS_PER_RECORD, NUM_COUNTS = range(6)  # columns of Fleet.counts
+
+
+@compiled
+def record(fleet: Fleet, now: int) -> None:
+    """Write a record of the fleet when one is due and there is room for it."""
+    index = load(fleet.counts, RECORDS)
+    if now % load(fleet.counts, TICKS_PER_RECORD) == 0 and index < load(fleet.counts, RECORD_ROOM):
+        store(fleet.counts, RECORDS, index + 1)
+        for vehicle in range(fleet.size):
+            write_truth(fleet, index * fleet.size + vehicle, vehicle)
+            write_thought(fleet, index * fleet.size + vehicle, vehicle)
+            write_predictions(fleet, index * fleet.size + vehicle, vehicle)
+
+
+@compiled
+def write_truth(fleet: Fleet, row: int, vehicle: int) -> None:
+    """Log what is true of a vehicle."""
+    vessel, water = get_vessel(fleet.vehicles, vehicle), get_water(fleet.vehicles, vehicle)
+    on_path = get_on_path(fleet.vehicles, vehicle)
+    north, east = to_ned(vessel.heading, vessel.surge, vessel.sway)
+    truth = Truth(
+        vessel.north,
+        vessel.east,
+        vessel.depth,
+        vessel.heading,
+        vessel.surge,
+        vessel.sway,
+        vessel.yaw_rate,
+        atan2(east + water.east, north + water.north),
+        hypot(north + water.north, east + water.east),
+        water.north,
+        water.east,
+        on_path.cross_track,
+        on_path.along_track,
+        on_path.path_course,
+        on_path.curvature,
+        on_path.coordination_state,
+        vessel.shaft_speed,
+        vessel.thrust,
+        vessel.yaw_moment,
+    )
+    put_truth(fleet.log, row, truth)
+
+
+@compiled
+def write_thought(fleet: Fleet, row: int, vehicle: int) -> None:
+    """Log what a vehicle believes and wants."""
+    place, current = get_whereabouts(fleet.minds, vehicle), get_current(fleet.minds, vehicle)
+    along = get_along(fleet.minds, vehicle)
+    reference = get_reference(fleet.vehicles, vehicle)
+    thought = Thought(
+        place.north,
+        place.east,
+        current.north,
+        current.east,
+        along.cross_track,
+        along.coordination_state,
+        reference.course,
+        reference.heading,
+        reference.speed,
+        get_correction(fleet.minds, vehicle).speed,
+    )
+    put_thought(fleet.log, row, thought)
+
+
+@compiled
+def write_predictions(fleet: Fleet, row: int, vehicle: int) -> None:
+    """Log where a vehicle takes the others to be along the formation."""
+    others = at(fleet.others, vehicle * fleet.size * OTHERS_WIDTH)
+    for other in range(fleet.size):
+        store(fleet.predictions, row * fleet.size + other, get_acquaintance(others, other).predicted)
+
+
+@compiled
+def write_message(
+    fleet: Fleet, sent: float, received: float, sender: int, receiver: int, lost: float, validity: float
+) -> None:
+    """Log what became of a message on its way to one receiver, while there is room."""
+    index = load(fleet.counts, MESSAGES)
+    if index < load(fleet.counts, MESSAGE_ROOM):
+        store(fleet.counts, MESSAGES, index + 1)
+        put_message(fleet.messages, index, MessageRow(sent, received, sender, receiver, lost, validity))

@@ -1,0 +1,252 @@
+"""Metrics, summed tick by tick as the mission flies; nothing needs hindsight.
+
+A vehicle's transient is over when |e| has been below the threshold for the hold time; until then
+only `settling_time` counts, and after the end of its path nothing about the path does.
+"""
+
+from typing import NamedTuple
+
+from cardume.compiler import Layout, at, compiled, gather, load, scatter, some, where
+from cardume.maths import clip, floor, sqrt
+from cardume.onboard.mind import get_current, get_whereabouts
+from cardume.paths.projection import point_at
+from cardume.paths.table import arc_length_at
+from cardume.signals import VesselState
+from cardume.simulation.fleet import (
+    Fleet,
+    OnPath,
+    get_on_path,
+    get_vessel,
+    get_water,
+)
+
+BINS = 512  # of a histogram; bin k holds e with 512 e / (1 + e) in [k, k + 1)
+CROSS_TRACK, FORMATION, HISTOGRAMS = range(3)
+
+
+class Rules(NamedTuple):
+    """What the metrics count."""
+
+    threshold: float = 0.5  # [m] of |e| for the transient to end
+    hold: float = 10.0  # [s] below it
+    swath: float = 0.0  # [m] width; 0: no swath coverage
+
+
+class Score(NamedTuple):
+    """Sums of one vehicle."""
+
+    below: float = 0.0  # [s] |e| has been below the threshold
+    settled: float = 0.0  # [-] 1 once the transient is over
+    settling_time: float = 0.0  # [s]
+    line_time: float = 0.0  # [s] counted on lines
+    line_squares: float = 0.0  # [m^2 s] of the cross-track error
+    arc_time: float = 0.0  # [s]
+    arc_squares: float = 0.0  # [m^2 s]
+    cross_track_max: float = 0.0  # [m]
+    flown: float = 0.0  # [s] counted for beliefs
+    position_squares: float = 0.0  # [m^2 s] of the position estimate's error
+    current_squares: float = 0.0  # [m^2/s] of the current estimate's error
+    first_state: float = 0.0  # [m] coordination state when the transient ended
+    progress: float = 0.0  # [m] of the coordination state since then
+    energy: float = 0.0  # [J]
+    yaw_effort: float = 0.0  # [rad^2/s^3]
+    last_yaw_rate: float = 0.0  # [rad/s]
+    swept: float = 0.0  # [m] length of path, weighted by how much of its swath was swept
+    farthest: float = 0.0  # [m] coordination state so far
+
+
+class Formation(NamedTuple):
+    """Sums of one vehicle's distance from its place in the formation."""
+
+    time: float = 0.0  # [s] counted
+    squares: float = 0.0  # [m^2 s]
+    relative_squares: float = 0.0  # [m^2 s] with the fleet's common displacement removed
+
+
+class Talk(NamedTuple):
+    """Messages of one vehicle."""
+
+    sent: float = 0.0
+    delivered: float = 0.0  # to it
+    age_sum: float = 0.0  # [s] of information, when it arrived
+    age_max: float = 0.0  # [s]
+
+
+class Deviation(NamedTuple):
+    """Where a vehicle is, less its place in the formation."""
+
+    north: float = 0.0  # [m]
+    east: float = 0.0  # [m]
+
+
+class FleetScore(NamedTuple):
+    """Sums of the fleet."""
+
+    time: float = 0.0  # [s] counted: all transients over, nobody finished
+    coordination_squares: float = 0.0  # [m^2 s] of the largest difference of two coordination states
+    coordination_max: float = 0.0  # [m]
+    separation_squared: float = 1e300  # [m^2] smallest distance of two vehicles
+
+
+SCORES = Layout(Score, Formation, Talk, Deviation)
+get_score, put_score = SCORES.reader(Score), SCORES.writer(Score)
+get_formation, put_formation = SCORES.reader(Formation), SCORES.writer(Formation)
+get_talk, put_talk = SCORES.reader(Talk), SCORES.writer(Talk)
+get_deviation, put_deviation = SCORES.reader(Deviation), SCORES.writer(Deviation)
+FLEET_SCORES = Layout(FleetScore)
+get_fleet_score, put_fleet_score = FLEET_SCORES.reader(FleetScore), FLEET_SCORES.writer(FleetScore)
+RULES = Layout(Rules)
+get_rules = RULES.reader(Rules)
+
+
+@compiled
+def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time: float) -> None:
+    """Count one tick of one vehicle."""
+    before, rules, dt = get_score(fleet.scores, vehicle), get_rules(fleet.requirements, 0), fleet.tick
+    error = abs(on_path.cross_track)
+    below = where(error < rules.threshold, before.below + dt, 0.0)
+    ends = (before.settled < 0.5) & (below >= rules.hold - 0.5 * dt)
+    settled = where(ends, 1.0, before.settled)
+    counted = where((settled > 0.5) & (on_path.finished < 0.5), dt, 0.0)
+    curved = on_path.curvature != 0.0
+    on_arc, on_line = where(curved, counted, 0.0), where(curved, 0.0, counted)
+    squared = error * error
+    first_state = where(ends, on_path.coordination_state, before.first_state)
+    believed, current = believed_errors(fleet, vehicle, vessel)
+    advance = where(
+        on_path.coordination_state > before.farthest, on_path.coordination_state - before.farthest, 0.0
+    )
+    covers = where(rules.swath > 0.0, clip(1.0 - error / where(rules.swath > 0.0, rules.swath, 1.0), 0.0, 1.0), 0.0)
+    yaw_acceleration = (vessel.yaw_rate - before.last_yaw_rate) / dt
+    after = Score(
+        below,
+        settled,
+        where(ends, clip(time - rules.hold + dt, 0.0, 1e9), before.settling_time),
+        before.line_time + on_line,
+        before.line_squares + on_line * squared,
+        before.arc_time + on_arc,
+        before.arc_squares + on_arc * squared,
+        where((counted > 0.0) & (error > before.cross_track_max), error, before.cross_track_max),
+        before.flown + dt,
+        before.position_squares + dt * believed,
+        before.current_squares + dt * current,
+        first_state,
+        where(counted > 0.0, on_path.coordination_state - first_state, before.progress),
+        before.energy + dt * vessel.power,
+        before.yaw_effort + dt * yaw_acceleration * yaw_acceleration,
+        vessel.yaw_rate,
+        before.swept + advance * covers,
+        where(advance > 0.0, on_path.coordination_state, before.farthest),
+    )
+    put_score(fleet.scores, vehicle, after)
+    tally(fleet, vehicle, CROSS_TRACK, error, counted > 0.0)
+
+
+@compiled
+def believed_errors(fleet: Fleet, vehicle: int, vessel: VesselState) -> tuple[float, float]:
+    """Squared errors of the believed position [m^2] and current [m^2/s^2]."""
+    place, current = get_whereabouts(fleet.minds, vehicle), get_current(fleet.minds, vehicle)
+    water = get_water(fleet.vehicles, vehicle)
+    north, east = place.north - vessel.north, place.east - vessel.east
+    flow_north, flow_east = current.north - water.north, current.east - water.east
+    return north * north + east * east, flow_north * flow_north + flow_east * flow_east
+
+
+@compiled
+def tally(fleet: Fleet, vehicle: int, histogram: int, size: float, counts: bool) -> None:
+    """Add one to the bin of an error, finer for small errors."""
+    bins = at(fleet.histograms, (vehicle * HISTOGRAMS + histogram) * BINS)
+    index = clip(floor(BINS * (size / (1.0 + size))), 0.0, BINS - 1.0)
+    index = where(counts & (index == index), index, 0.0)
+    scatter(bins, index, counts, gather(bins, index) + 1.0)
+
+
+@compiled
+def note_sent(fleet: Fleet, vehicle: int, sends: bool) -> None:
+    """Count a message that a vehicle sent."""
+    talk = get_talk(fleet.scores, vehicle)
+    put_talk(
+        fleet.scores,
+        vehicle,
+        Talk(talk.sent + where(sends, 1.0, 0.0), talk.delivered, talk.age_sum, talk.age_max),
+    )
+
+
+@compiled
+def note_heard(fleet: Fleet, vehicle: int, here: bool, age: float) -> None:
+    """Count a message that reached a vehicle, and how old its news was."""
+    talk = get_talk(fleet.scores, vehicle)
+    after = Talk(
+        talk.sent, talk.delivered + 1.0, talk.age_sum + age, where(age > talk.age_max, age, talk.age_max)
+    )
+    put_talk(fleet.scores, vehicle, where(here, after, talk))
+
+
+@compiled
+def score_fleet(fleet: Fleet) -> None:
+    """Count one tick of the fleet: coordination, formation and separation."""
+    first = get_on_path(fleet.vehicles, 0).coordination_state
+    lowest, highest, total = first, first, 0.0 * first
+    counts = first == first
+    for vehicle in range(fleet.size):
+        on_path, settled = get_on_path(fleet.vehicles, vehicle), get_score(fleet.scores, vehicle).settled
+        state = on_path.coordination_state
+        lowest, highest = where(state < lowest, state, lowest), where(state > highest, state, highest)
+        total = total + state
+        counts = counts & (settled > 0.5) & (on_path.finished < 0.5)
+    before = get_fleet_score(fleet.fleet_score, 0)
+    spread = highest - lowest
+    dt = where(counts, fleet.tick, 0.0)
+    after = FleetScore(
+        before.time + dt,
+        before.coordination_squares + dt * spread * spread,
+        where(counts & (spread > before.coordination_max), spread, before.coordination_max),
+        nearest_pair(fleet, before.separation_squared),
+    )
+    put_fleet_score(fleet.fleet_score, 0, after)
+    if some(counts) and fleet.size > 1:
+        score_formation(fleet, total / fleet.size, counts)
+
+
+@compiled
+def nearest_pair(fleet: Fleet, nearest: float) -> float:
+    """The smallest squared distance so far between two vehicles [m^2]."""
+    for one in range(fleet.size):
+        here = get_vessel(fleet.vehicles, one)
+        for other in range(one):
+            there = get_vessel(fleet.vehicles, other)
+            north, east, down = there.north - here.north, there.east - here.east, there.depth - here.depth
+            apart = north * north + east * east + down * down
+            nearest = where(apart < nearest, apart, nearest)
+    return nearest
+
+
+@compiled
+def score_formation(fleet: Fleet, mean_state: float, counts: bool) -> None:
+    """Distance of each vehicle from the point of its own path at the fleet's mean coordination state."""
+    north, east = 0.0 * mean_state, 0.0 * mean_state
+    for vehicle in range(fleet.size):
+        path = at(fleet.paths, load(fleet.path_starts, vehicle))
+        wanted = point_at(path, arc_length_at(path, mean_state))
+        vessel = get_vessel(fleet.vehicles, vehicle)
+        away = Deviation(vessel.north - wanted.north, vessel.east - wanted.east)
+        put_deviation(fleet.scores, vehicle, away)
+        north, east = north + away.north, east + away.east
+    for vehicle in range(fleet.size):
+        count_formation(fleet, vehicle, Deviation(north / fleet.size, east / fleet.size), counts)
+
+
+@compiled
+def count_formation(fleet: Fleet, vehicle: int, common: Deviation, counts: bool) -> None:
+    """Add one tick to a vehicle's formation error, with and without the fleet's common displacement."""
+    away, before = get_deviation(fleet.scores, vehicle), get_formation(fleet.scores, vehicle)
+    north, east = away.north - common.north, away.east - common.east
+    squared = away.north * away.north + away.east * away.east
+    dt = where(counts, fleet.tick, 0.0)
+    after = Formation(
+        before.time + dt,
+        before.squares + dt * squared,
+        before.relative_squares + dt * (north * north + east * east),
+    )
+    put_formation(fleet.scores, vehicle, after)
+    tally(fleet, vehicle, FORMATION, sqrt(squared), counts)

@@ -1,0 +1,314 @@
+"""Sensors: each reads the truth of its latency ago at its own period, and holds or forgets the reading."""
+
+from cardume.compiler import at, compiled, floor, some, store, where
+from cardume.maths import to_body
+from cardume.maths.random import Key, normals
+from cardume.onboard.mind import get_setup
+from cardume.onboard.neighborhood import USBL_WIDTH
+from cardume.signals import (
+    NOTHING,
+    AhrsReading,
+    Baseline,
+    DvlReading,
+    GnssReading,
+    Measured,
+    Noise,
+    Sampling,
+    VesselState,
+    Water,
+)
+from cardume.simulation.fleet import (
+    NUM_SENSORS,
+    NUM_STREAMS,
+    SEEN,
+    SENSORS,
+    STREAMS,
+    Fleet,
+    Held,
+    Satellite,
+    Timing,
+    book_of,
+    get_held,
+    get_key,
+    get_timing,
+    get_vessel,
+    get_water,
+    measured_of,
+    put_held,
+    put_satellite,
+    put_timing,
+)
+from cardume.world.sensors.base import (
+    read_ahrs,
+    read_depth,
+    read_dvl,
+    read_gnss,
+    read_thruster_speed,
+    read_usbl,
+)
+
+GNSS, AHRS, DEPTH, USBL, DVL, THRUSTER_SPEED = range(len(SENSORS))
+LINK = STREAMS.index("link")
+put_past_vessel, pick_past_vessel = SEEN.writer(VesselState), SEEN.picker(VesselState)
+put_past_water, pick_past_water = SEEN.writer(Water), SEEN.picker(Water)
+
+
+@compiled
+def sense(fleet: Fleet, vehicle: int, now: int) -> Measured:
+    """Let every sensor of a vehicle that is due read, and return what all of them say now."""
+    remember(fleet, vehicle, now)
+    held = get_held(fleet.vehicles, vehicle)
+    held = sense_attitude(fleet, vehicle, now, held)
+    held = sense_depth(fleet, vehicle, now, held)
+    held = sense_shaft(fleet, vehicle, now, held)
+    put_held(fleet.vehicles, vehicle, sense_velocity(fleet, vehicle, now, held))
+    sense_position(fleet, vehicle, now)
+    sense_others(fleet, vehicle, now)
+    return measured_of(fleet, vehicle)
+
+
+@compiled
+def remember(fleet: Fleet, vehicle: int, now: int) -> None:
+    """Keep the truth of this tick for sensors with a latency."""
+    if fleet.past_size > 1:
+        row = vehicle * fleet.past_size + now % fleet.past_size
+        put_past_vessel(fleet.past, row, get_vessel(fleet.vehicles, vehicle))
+        put_past_water(fleet.past, row, get_water(fleet.vehicles, vehicle))
+
+
+@compiled
+def timing_of(fleet: Fleet, vehicle: int, sensor: int) -> Timing:
+    """When a sensor of a vehicle reads."""
+    return get_timing(fleet.timings, vehicle * NUM_SENSORS + sensor)
+
+
+@compiled
+def schedule_next(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, due: bool) -> None:
+    """After a reading, set when the next one is delivered."""
+    following = where(due, timing.next_sample + timing.period, timing.next_sample)
+    put_timing(
+        fleet.timings, vehicle * NUM_SENSORS + sensor, Timing(following, timing.period, timing.latency)
+    )
+
+
+@compiled
+def key_of(fleet: Fleet, vehicle: int, stream: int) -> Key:
+    """Names the random numbers of one stream of one vehicle."""
+    return get_key(fleet.keys, vehicle * NUM_STREAMS + stream)
+
+
+@compiled
+def noise_of(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, now: int) -> Noise:
+    """The noise of a reading, named after the tick it is valid in."""
+    return normals(key_of(fleet, vehicle, sensor), now - timing.latency)
+
+
+@compiled
+def past_row(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> float:
+    """Where the truth of a sensor's latency ago is kept."""
+    then = now - timing.latency
+    return vehicle * fleet.past_size + then - fleet.past_size * floor(then / fleet.past_size)
+
+
+@compiled
+def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselState:
+    """The state of a vehicle when the reading of this tick was valid."""
+    vessel = get_vessel(fleet.vehicles, vehicle)
+    if fleet.past_size > 1:
+        vessel = pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now))
+    return vessel
+
+
+@compiled
+def water_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> Water:
+    """The water around a vehicle when the reading of this tick was valid."""
+    water = get_water(fleet.vehicles, vehicle)
+    if fleet.past_size > 1:
+        water = pick_past_water(fleet.past, past_row(fleet, vehicle, timing, now))
+    return water
+
+
+@compiled
+def sampling_of(fleet: Fleet, timing: Timing, now: int) -> Sampling:
+    """When a reading is valid, and how long after the one before."""
+    return Sampling(timing.period * fleet.tick, (now - timing.latency) * fleet.tick)
+
+
+@compiled
+def sense_attitude(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+    """Heading, yaw rate, roll and pitch by AHRS."""
+    timing = timing_of(fleet, vehicle, AHRS)
+    due = timing.next_sample <= now
+    if some(due):
+        reading = read_ahrs(
+            book_of(fleet, vehicle, fleet.tick),
+            0,
+            vessel_then(fleet, vehicle, timing, now),
+            water_then(fleet, vehicle, timing, now),
+            noise_of(fleet, vehicle, AHRS, timing, now),
+            sampling_of(fleet, timing, now),
+        )
+        held = where(due, _with_attitude(held, reading), held)
+        schedule_next(fleet, vehicle, AHRS, timing, due)
+    return held
+
+
+@compiled
+def _with_attitude(held: Held, reading: AhrsReading) -> Held:
+    return Held(
+        reading.heading,
+        reading.yaw_rate,
+        reading.roll,
+        reading.pitch,
+        held.depth,
+        held.heave,
+        held.shaft_speed,
+        held.dvl_surge,
+        held.dvl_sway,
+    )
+
+
+@compiled
+def sense_depth(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+    """Depth by pressure, and heave from its last two readings."""
+    timing = timing_of(fleet, vehicle, DEPTH)
+    due = timing.next_sample <= now
+    if some(due):
+        depth = read_depth(
+            book_of(fleet, vehicle, fleet.tick),
+            0,
+            vessel_then(fleet, vehicle, timing, now),
+            water_then(fleet, vehicle, timing, now),
+            noise_of(fleet, vehicle, DEPTH, timing, now),
+            sampling_of(fleet, timing, now),
+        )
+        sunk = (depth - held.depth) / (timing.period * fleet.tick)
+        heave = where(held.depth == held.depth, sunk, 0.0)
+        held = where(due, _with_depth(held, depth, heave), held)
+        schedule_next(fleet, vehicle, DEPTH, timing, due)
+    return held
+
+
+@compiled
+def _with_depth(held: Held, depth: float, heave: float) -> Held:
+    return Held(
+        held.heading,
+        held.yaw_rate,
+        held.roll,
+        held.pitch,
+        depth,
+        heave,
+        held.shaft_speed,
+        held.dvl_surge,
+        held.dvl_sway,
+    )
+
+
+@compiled
+def sense_shaft(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+    """Speed of the thrusters' shafts."""
+    timing = timing_of(fleet, vehicle, THRUSTER_SPEED)
+    due = timing.next_sample <= now
+    if some(due):
+        shaft_speed = read_thruster_speed(
+            book_of(fleet, vehicle, fleet.tick),
+            0,
+            vessel_then(fleet, vehicle, timing, now),
+            water_then(fleet, vehicle, timing, now),
+            noise_of(fleet, vehicle, THRUSTER_SPEED, timing, now),
+            sampling_of(fleet, timing, now),
+        )
+        held = where(due, _with_speeds(held, shaft_speed, held.dvl_surge, held.dvl_sway), held)
+        schedule_next(fleet, vehicle, THRUSTER_SPEED, timing, due)
+    return held
+
+
+@compiled
+def sense_velocity(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+    """Velocity through the water by DVL."""
+    timing = timing_of(fleet, vehicle, DVL)
+    due = timing.next_sample <= now
+    if some(due):
+        reading: DvlReading = read_dvl(
+            book_of(fleet, vehicle, fleet.tick),
+            0,
+            vessel_then(fleet, vehicle, timing, now),
+            water_then(fleet, vehicle, timing, now),
+            noise_of(fleet, vehicle, DVL, timing, now),
+            sampling_of(fleet, timing, now),
+        )
+        held = where(due, _with_speeds(held, held.shaft_speed, reading.surge, reading.sway), held)
+        schedule_next(fleet, vehicle, DVL, timing, due)
+    return held
+
+
+@compiled
+def _with_speeds(held: Held, shaft_speed: float, surge: float, sway: float) -> Held:
+    return Held(
+        held.heading,
+        held.yaw_rate,
+        held.roll,
+        held.pitch,
+        held.depth,
+        held.heave,
+        shaft_speed,
+        surge,
+        sway,
+    )
+
+
+@compiled
+def sense_position(fleet: Fleet, vehicle: int, now: int) -> None:
+    """Position by GNSS, there only in the tick in which it is delivered."""
+    timing = timing_of(fleet, vehicle, GNSS)
+    due = timing.next_sample <= now
+    nothing = Satellite(NOTHING, NOTHING, NOTHING)
+    if some(due):
+        reading: GnssReading = read_gnss(
+            book_of(fleet, vehicle, fleet.tick),
+            0,
+            vessel_then(fleet, vehicle, timing, now),
+            water_then(fleet, vehicle, timing, now),
+            noise_of(fleet, vehicle, GNSS, timing, now),
+            sampling_of(fleet, timing, now),
+        )
+        new = Satellite(reading.north, reading.east, timing.latency * fleet.tick)
+        put_satellite(fleet.vehicles, vehicle, where(due, new, nothing))
+        schedule_next(fleet, vehicle, GNSS, timing, due)
+    else:
+        put_satellite(fleet.vehicles, vehicle, nothing)
+
+
+@compiled
+def sense_others(fleet: Fleet, vehicle: int, now: int) -> None:
+    """Range, azimuth and elevation of every other vehicle by USBL, there only when delivered."""
+    if some(get_setup(fleet.minds, vehicle).shares_sightings > 0.5):
+        timing = timing_of(fleet, vehicle, USBL)
+        due = timing.next_sample <= now
+        for other in range(fleet.size):
+            hear_beacon(fleet, vehicle, other, timing, due, now)
+        schedule_next(fleet, vehicle, USBL, timing, due)
+
+
+@compiled
+def hear_beacon(fleet: Fleet, vehicle: int, other: int, timing: Timing, due: bool, now: int) -> None:
+    """One USBL reading, in the axes of the head; each pair of vehicles has its own noise."""
+    rows = at(fleet.usbl, (vehicle * fleet.size + other) * USBL_WIDTH)
+    store(rows, USBL_WIDTH - 1, NOTHING)
+    if some(due) and other != vehicle:
+        here, there = vessel_then(fleet, vehicle, timing, now), vessel_then(fleet, other, timing, now)
+        ahead, starboard = to_body(here.heading, there.north - here.north, there.east - here.east)
+        own, others = key_of(fleet, vehicle, USBL), key_of(fleet, other, USBL)
+        pair = Key(own.seed_low, own.seed_high, own.stream, own.vehicle_low, others.vehicle_low)
+        reading = read_usbl(
+            book_of(fleet, vehicle, fleet.tick),
+            other,
+            Baseline(ahead, starboard, there.depth - here.depth),
+            normals(pair, now - timing.latency),
+            sampling_of(fleet, timing, now),
+        )
+        heard = due & (reading.range == reading.range)
+        store(rows, 0, reading.range)
+        store(rows, 1, reading.azimuth)
+        store(rows, 2, reading.elevation)
+        store(rows, USBL_WIDTH - 1, where(heard, timing.latency * fleet.tick, NOTHING))

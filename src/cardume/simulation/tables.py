@@ -1,0 +1,283 @@
+"""From plans to tables: numpy arrays that hold one mission, or eight side by side in lanes."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from cardume.compiler import WIDTH, Layout
+from cardume.laws import COLUMNS, FAMILIES
+from cardume.maths.random import random_key
+from cardume.onboard.mind import OTHERS, OWN, Acquaintance, Speech, Whereabouts, inbox_width
+from cardume.paths.table import PathPlace
+from cardume.simulation.air import NEVER
+from cardume.simulation.fleet import (
+    KEY,
+    SEEN,
+    SENSORS,
+    STREAMS,
+    TIMING,
+    VEHICLE,
+    Held,
+    Satellite,
+    Tables,
+    Timing,
+    Whole,
+)
+from cardume.simulation.plan import Choice, Plan, VehiclePlan
+from cardume.simulation.recording import LOG, MESSAGE_LOG, NUM_COUNTS
+from cardume.simulation.score import BINS, FLEET_SCORES, HISTOGRAMS, RULES, SCORES, FleetScore
+from cardume.simulation.tick import TROUBLE_WIDTH
+
+MOST_SLOTS = 64  # messages of one sender under way at once
+USBL_COLUMNS = 4
+# Families that keep one memory for each vehicle of the fleet.
+PER_OTHER = frozenset({"reference_point", "coordination", "neighbors", "usbl", "acoustics"})
+
+
+def make_tables(plan: Plan, lanes: bool = False) -> Tables:
+    """Write the tables of one mission.
+
+    Args:
+        plan: the mission.
+        lanes: [-] look the laws up for the lanes kernel; `join` then puts eight missions together.
+
+    Returns:
+        Tables of (n,) arrays.
+    """
+    vehicles = [plan.vehicles[k] for k in plan.order]
+    size = len(vehicles)
+    gains, memory = _gains(vehicles), _memories(vehicles)
+    graph, list_width, widest = _graph(plan, vehicles)
+    slots, past_size = _slots(vehicles), _past_size(vehicles, plan.tick)
+    paths, path_starts = _paths(vehicles)
+    records = math.ceil(plan.num_ticks * plan.tick / plan.log_period - 1e-9) + 1 if plan.log_period > 0 else 0
+    room = _message_room(plan, vehicles, widest) if records else 0
+    messages = inbox_width(size)
+    links = max(1, size * widest)
+    return Tables(
+        Whole(
+            size,
+            max(1, round(plan.tick / plan.plant_step)),
+            gains.shape[1],
+            memory.shape[1],
+            past_size,
+            list_width,
+            slots,
+            messages,
+            widest,
+        ),
+        plan.tick,
+        _handles(vehicles, size, lanes),
+        gains.ravel(),
+        memory.ravel(),
+        np.concatenate([_vehicle_row(v) for v in vehicles]),
+        np.concatenate([_mind_row(v) for v in vehicles]),
+        np.tile(_row(OTHERS, Acquaintance()), size * size),
+        np.full(size * size * USBL_COLUMNS, np.nan),
+        np.concatenate([_timing_row(v, plan.tick) for v in vehicles]),
+        np.concatenate([*(_key_row(v, plan.seed) for v in vehicles), random_key(plan.seed, "current")]),
+        np.zeros(max(1, size * past_size * SEEN.width)),
+        paths,
+        path_starts,
+        graph,
+        np.ascontiguousarray(plan.field, float),
+        np.full(size * slots * messages, np.nan),
+        np.zeros(size),
+        np.zeros(size, np.int64),
+        np.full(links, NEVER),
+        np.full(links * slots, NEVER),
+        np.full(links * messages, np.nan),
+        np.zeros(size * SCORES.width),
+        _row(FLEET_SCORES, FleetScore()),
+        np.zeros(size * HISTOGRAMS * BINS),
+        np.zeros(TROUBLE_WIDTH),
+        np.full(max(1, records * size * LOG.width), np.nan),
+        np.full(max(1, records * size * size), np.nan),
+        np.full(max(1, room * MESSAGE_LOG.width), np.nan),
+        _counts(records, room, plan),
+        _row(RULES, plan.rules),
+    )
+
+
+def join(tables: Sequence[Tables]) -> Tables:
+    """Put up to eight missions of the same shape side by side; missing ones repeat the last.
+
+    Args:
+        tables: of missions with the same laws and sizes, made for lanes.
+
+    Returns:
+        Tables of (n, 8) arrays; whole numbers and the gridded current are the first mission's.
+    """
+    full = [*tables, *[tables[-1]] * (WIDTH - len(tables))]
+    first = full[0]
+    joined = []
+    for name in Tables._fields:
+        parts = [getattr(t, name) for t in full]
+        is_shared = name == "field" or not isinstance(parts[0], np.ndarray) or parts[0].dtype == np.int64
+        joined.append(getattr(first, name) if is_shared else np.ascontiguousarray(np.stack(parts, axis=-1)))
+    return Tables(*joined)
+
+
+def lane(tables: Tables, which: int) -> Tables:
+    """One mission out of eight."""
+    parts = [getattr(tables, name) for name in Tables._fields]
+    return Tables(*[np.ascontiguousarray(p[:, which]) if np.ndim(p) == 2 else p for p in parts])
+
+
+def _row(layout: Layout, *records: Any) -> np.ndarray:
+    row = np.zeros(layout.width)
+    for record in records:
+        start = layout.offsets[type(record)]
+        row[start : start + len(record)] = record
+    return row
+
+
+def _vehicle_row(vehicle: VehiclePlan) -> np.ndarray:
+    return _row(VEHICLE, vehicle.state, vehicle.place, Held(), Satellite())
+
+
+def _mind_row(vehicle: VehiclePlan) -> np.ndarray:
+    return _row(OWN, vehicle.setup, Whereabouts(*_estimate(vehicle)), Speech())
+
+
+def _estimate(vehicle: VehiclePlan) -> tuple[float, float]:
+    return vehicle.estimate or (vehicle.state.north, vehicle.state.east)
+
+
+def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
+    row = []
+    for sensor in SENSORS:
+        timing = Timing()
+        if sensor in vehicle.laws:
+            choice = vehicle.laws[sensor]
+            latency = float(round(choice.value("latency") / tick))
+            timing = Timing(latency, float(max(1, round(choice.value("period") / tick))), latency)
+        row.append(_row(TIMING, timing))
+    return np.concatenate(row)
+
+
+def _key_row(vehicle: VehiclePlan, seed: int) -> np.ndarray:
+    return np.concatenate([random_key(seed, stream, vehicle.name) for stream in STREAMS])
+
+
+def _handles(vehicles: Sequence[VehiclePlan], size: int, lanes: bool) -> np.ndarray:
+    """(vehicle, family, 4) whole numbers: handle, first gain, first memory row, memory width."""
+    table = np.zeros((size, len(FAMILIES), COLUMNS), np.int64)
+    for row, vehicle in zip(table, vehicles, strict=True):
+        gain = memory = 0
+        for place, family in enumerate(FAMILIES):
+            if family in vehicle.laws:
+                law = vehicle.laws[family].law
+                width = law.initial_memory().size
+                row[place] = law.handle(lanes), gain, memory, width
+                gain += len(law.parameters)
+                memory += width * (size if family in PER_OTHER else 1)
+    return table.ravel()
+
+
+def _gains(vehicles: Sequence[VehiclePlan]) -> np.ndarray:
+    rows = [
+        np.concatenate(
+            [v.laws[f].law.gains(**v.laws[f].parameters) for f in FAMILIES if f in v.laws] or [np.zeros(0)]
+        )
+        for v in vehicles
+    ]
+    return _stacked(rows)
+
+
+def _memories(vehicles: Sequence[VehiclePlan]) -> np.ndarray:
+    rows = []
+    for vehicle in vehicles:
+        parts = [np.zeros(0)]
+        for family in FAMILIES:
+            if family in vehicle.laws:
+                start = _initial_memory(vehicle, family, vehicle.laws[family])
+                parts += [start] * (len(vehicles) if family in PER_OTHER else 1)
+        rows.append(np.concatenate(parts))
+    own = _stacked(rows)
+    _place_on_paths(vehicles, own)
+    return own
+
+
+def _initial_memory(vehicle: VehiclePlan, family: str, choice: Choice) -> np.ndarray:
+    """The law's own start; a position law starts at the vehicle's initial estimate."""
+    start = choice.law.initial_memory()
+    if family == "position" and choice.law.memory_type is not None:
+        fields = choice.law.memory_type._fields
+        for name, value in zip(("north", "east"), _estimate(vehicle), strict=True):
+            if name in fields:
+                start[fields.index(name)] = value
+    return start
+
+
+def _place_on_paths(vehicles: Sequence[VehiclePlan], memories: np.ndarray) -> None:
+    """Every vehicle knows at which place of its path each vehicle starts."""
+    for vehicle, row in zip(vehicles, memories, strict=True):
+        first = 0
+        for family in FAMILIES[: FAMILIES.index("reference_point")]:
+            if family in vehicle.laws:
+                first += vehicle.laws[family].law.initial_memory().size * (
+                    len(vehicles) if family in PER_OTHER else 1
+                )
+        law = vehicle.laws["reference_point"].law
+        width = law.initial_memory().size
+        for other in vehicles:
+            if law.memory_type is PathPlace:
+                row[first : first + width] = other.place
+            first += width
+
+
+def _stacked(rows: Sequence[np.ndarray]) -> np.ndarray:
+    width = max(1, *(row.size for row in rows))
+    return np.stack([np.pad(row, (0, width - row.size)) for row in rows])
+
+
+def _paths(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
+    starts = np.cumsum([0, *(v.path.size for v in vehicles)])[:-1]
+    return np.concatenate([v.path for v in vehicles]), starts.astype(np.int64)
+
+
+def _graph(plan: Plan, vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, int, int]:
+    """Lists after their length: neighbors, then whose states matter, then whose messages are read."""
+    hears = np.asarray(plan.hears)[np.ix_(plan.order, plan.order)] != 0.0
+    np.fill_diagonal(hears, False)
+    size = len(vehicles)
+    neighbors = [list(np.flatnonzero(row)) for row in hears]
+    known = [sorted({*n, *(k for j in n for k in neighbors[j])} - {i}) for i, n in enumerate(neighbors)]
+    sharers = {k for k, v in enumerate(vehicles) if v.setup.shares_sightings > 0.5}
+    sources = [sorted({*n, *sharers} - {i}) for i, n in enumerate(neighbors)]
+    width = 1 + max(len(x) for lists in (neighbors, known, sources) for x in lists)
+    table = np.zeros((3, size, width), np.int64)
+    for block, lists in zip(table, (neighbors, known, sources), strict=True):
+        for row, members in zip(block, lists, strict=True):
+            row[0], row[1 : 1 + len(members)] = len(members), members
+    return table.ravel(), width, max(len(x) for x in sources)
+
+
+def _slots(vehicles: Sequence[VehiclePlan]) -> int:
+    """How many messages of one sender can be under way: the longest delay over the shortest period."""
+    delays = [_parameter(v.laws["acoustics"], "delay", 2.0) for v in vehicles]
+    periods = [_parameter(v.laws["messaging"], "period", 0.5) for v in vehicles]
+    return min(MOST_SLOTS, math.ceil((max(delays) + 2.0) / min(periods)) + 2)
+
+
+def _parameter(choice: Choice, name: str, otherwise: float) -> float:
+    return choice.value(name) if any(p.name == name for p in choice.law.parameters) else otherwise
+
+
+def _past_size(vehicles: Sequence[VehiclePlan], tick: float) -> int:
+    latencies = [v.laws[s].value("latency") for v in vehicles for s in SENSORS if s in v.laws]
+    return 1 + max([0, *(round(latency / tick) for latency in latencies)])
+
+
+def _message_room(plan: Plan, vehicles: Sequence[VehiclePlan], widest: int) -> int:
+    periods = [_parameter(v.laws["messaging"], "period", plan.tick) for v in vehicles]
+    return int(len(vehicles) * widest * (plan.duration / max(plan.tick, min(periods)) + 2))
+
+
+def _counts(records: int, room: int, plan: Plan) -> np.ndarray:
+    counts = np.zeros(NUM_COUNTS, np.int64)
+    counts[2:] = records, room, max(1, round(plan.log_period / plan.tick)) if records else 1
+    return counts

@@ -1,0 +1,128 @@
+"""One tick of the engine."""
+
+from cardume.compiler import Rows, at, compiled, load, negate, some, store, where
+from cardume.maths.random import normals
+from cardume.onboard.agent import decide
+from cardume.onboard.mind import get_whereabouts
+from cardume.paths.projection import project
+from cardume.signals import Noise, Place, VesselState, Water, Where
+from cardume.simulation.air import arrived, carry, speak
+from cardume.simulation.fleet import (
+    NUM_STREAMS,
+    Fleet,
+    OnPath,
+    book_of,
+    get_key,
+    get_on_path,
+    get_reference,
+    get_true_place,
+    get_vessel,
+    get_water,
+    mind_of,
+    put_on_path,
+    put_reference,
+    put_true_place,
+    put_vessel,
+    put_water,
+)
+from cardume.simulation.motion import move
+from cardume.simulation.recording import record
+from cardume.simulation.score import score, score_fleet
+from cardume.simulation.sensing import sense
+from cardume.world.currents.base import flow
+
+FINE, STATE, CURRENT, REFERENCE, BELIEF = 0.0, 1.0, 2.0, 3.0, 4.0  # what is not a number
+CODE, VEHICLE, TIME, TROUBLE_WIDTH = range(4)  # columns of Fleet.trouble
+
+
+@compiled
+def tick(fleet: Fleet, now: int) -> bool:
+    """Vehicles sense, decide and speak; sound travels; all move.
+
+    Args:
+        fleet: the mission's tables, changed in place.
+        now: [ticks] since the start of the mission.
+
+    Returns:
+        Whether any number in any lane is not one; `trouble` says which.
+    """
+    time = now * fleet.tick
+    weather = common_noise(fleet, now)
+    for i in range(fleet.size):
+        truth = get_vessel(fleet.vehicles, i)
+        put_water(fleet.vehicles, i, current_at(fleet, i, truth, weather, time))
+        find_on_path(fleet, i, truth)
+    for i in range(fleet.size):
+        measured = sense(fleet, i, now)
+        heard = arrived(fleet, i, time)
+        reference, said = decide(mind_of(fleet, i), measured, heard, time)
+        put_reference(fleet.vehicles, i, reference)
+        speak(fleet, i, said)
+    carry(fleet, time, now)  # delay, loss
+    record(fleet, now)
+    for i in range(fleet.size):
+        score(fleet, i, get_vessel(fleet.vehicles, i), get_on_path(fleet.vehicles, i), time)
+        vessel = move(fleet, i, get_reference(fleet.vehicles, i), get_water(fleet.vehicles, i))
+        put_vessel(fleet.vehicles, i, vessel)
+    score_fleet(fleet)
+    return health(fleet, time)
+
+
+@compiled
+def common_noise(fleet: Fleet, now: int) -> Noise:
+    """The randomness of the sea, the same for all vehicles."""
+    return normals(get_key(fleet.keys, fleet.size * NUM_STREAMS), now)
+
+
+@compiled
+def current_at(fleet: Fleet, vehicle: int, truth: VesselState, weather: Noise, time: float) -> Water:
+    """The water around a vehicle."""
+    place = Where(truth.north, truth.east, truth.depth, time, fleet.field)
+    return flow(book_of(fleet, vehicle, fleet.tick), 0, place, weather)
+
+
+@compiled
+def find_on_path(fleet: Fleet, vehicle: int, truth: VesselState) -> None:
+    """Where a vehicle truly is on its path."""
+    path: Rows = at(fleet.paths, load(fleet.path_starts, vehicle))
+    error, place = project(Place(truth.north, truth.east, path), get_true_place(fleet.vehicles, vehicle))
+    put_true_place(fleet.vehicles, vehicle, place)
+    finished = where(error.finished > 0.5, 1.0, get_on_path(fleet.vehicles, vehicle).finished)
+    on_path = OnPath(
+        error.cross_track,
+        error.along_track,
+        error.path_course,
+        error.curvature,
+        error.path_parameter,
+        finished,
+    )
+    put_on_path(fleet.vehicles, vehicle, on_path)
+
+
+@compiled
+def health(fleet: Fleet, time: float) -> bool:
+    """Note the first vehicle, signal and time at which a number is not one."""
+    ill = load(fleet.trouble, CODE) > FINE
+    for i in range(fleet.size):
+        note_if_ill(fleet, i, time)
+    return negate(some(negate(ill | (load(fleet.trouble, CODE) > FINE))))
+
+
+@compiled
+def note_if_ill(fleet: Fleet, vehicle: int, time: float) -> None:
+    """Look at one vehicle: x - x is 0 only for finite x."""
+    vessel, water = get_vessel(fleet.vehicles, vehicle), get_water(fleet.vehicles, vehicle)
+    reference = get_reference(fleet.vehicles, vehicle)
+    place = get_whereabouts(fleet.minds, vehicle)
+    state = vessel.north + vessel.east + vessel.depth + vessel.heading + vessel.surge + vessel.sway
+    asked = reference.heading + reference.speed + reference.depth
+    flowing, believed = water.north + water.east, place.north + place.east
+    code = where(state - state == 0.0, FINE, STATE)
+    code = where(asked - asked == 0.0, code, REFERENCE)
+    code = where(believed - believed == 0.0, code, BELIEF)
+    code = where(flowing - flowing == 0.0, code, CURRENT)
+    first = (code > FINE) & (load(fleet.trouble, CODE) == FINE)
+    if some(first):
+        store(fleet.trouble, CODE, where(first, code, load(fleet.trouble, CODE)))
+        store(fleet.trouble, VEHICLE, where(first, vehicle * 1.0, load(fleet.trouble, VEHICLE)))
+        store(fleet.trouble, TIME, where(first, time, load(fleet.trouble, TIME)))

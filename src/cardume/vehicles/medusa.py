@@ -1,0 +1,215 @@
+"""MEDUSA: a torpedo pair with two horizontal and two vertical thrusters, as farol simulates it."""
+
+from typing import Annotated, NamedTuple
+
+from cardume.compiler import compiled, where
+from cardume.laws import (
+    Bounds,
+    Kilograms,
+    Meters,
+    NotNegative,
+    PerSecond,
+    Positive,
+    RadiansPerSecond,
+    Seconds,
+    Unit,
+)
+from cardume.signals import Command, VesselState, Water
+from cardume.vehicles import medusa_data as farol
+from cardume.vehicles.base import vehicle_model
+from cardume.vehicles.hull import Hull, Pose, Push, Velocity, drag, hull_step
+from cardume.vehicles.thrusters import (
+    ShaftSpeeds,
+    Thrusters,
+    allocate,
+    started_thrusters,
+    thruster_force,
+    turned_shafts,
+)
+
+Inertia = Annotated[float, Unit("kg m^2")]
+LinearDrag = Annotated[float, Unit("N s/m")]
+QuadraticDrag = Annotated[float, Unit("N s^2/m^2")]
+LinearYawDrag = Annotated[float, Unit("N m s")]
+QuadraticYawDrag = Annotated[float, Unit("N m s^2")]
+ThrustCoefficient = Annotated[float, Unit("N s^2/rad^2")]
+
+
+class Forces(NamedTuple):
+    """Force of each horizontal thruster, and of both vertical ones together."""
+
+    port: float  # [N] > 0 ahead
+    starboard: float  # [N]
+    down: float  # [N]
+
+
+@compiled
+def forces_of(shafts: ShaftSpeeds, coefficient: float) -> Forces:
+    """Forces of all thrusters: F = c n |n| each, and the vertical pair together.
+
+    Args:
+        shafts: shaft speeds [rad/s].
+        coefficient: [N s^2/rad^2] c.
+
+    Returns:
+        The forces.
+    """
+    return Forces(
+        thruster_force(shafts.port, coefficient),
+        thruster_force(shafts.starboard, coefficient),
+        farol.NUM_VERTICAL_THRUSTERS * thruster_force(shafts.vertical, coefficient),
+    )
+
+
+@compiled
+def push_of(forces: Forces, arm: float) -> Push:
+    """X = F_port + F_starboard,   N = l (F_port - F_starboard),   Z.
+
+    Args:
+        forces: of the thrusters.
+        arm: [m] l, of each horizontal thruster.
+
+    Returns:
+        Force and moment on the hull.
+    """
+    return Push(forces.port + forces.starboard, arm * (forces.port - forces.starboard), forces.down)
+
+
+@compiled
+def useful_power(forces: Forces, velocity: Velocity, arm: float) -> float:
+    """Power that the thrusters exchange with the hull, each counted as positive: sum of |F| |speed of the water there|.
+
+    Args:
+        forces: of the thrusters.
+        velocity: of the hull through the water.
+        arm: [m] of each horizontal thruster.
+
+    Returns:
+        The power [W]. No electrical model of these thrusters is published; a thruster that pushes a
+        vehicle at rest counts as free.
+    """
+    port = forces.port * (velocity.surge + arm * velocity.yaw_rate)
+    starboard = forces.starboard * (velocity.surge - arm * velocity.yaw_rate)
+    return abs(port) + abs(starboard) + abs(forces.down * velocity.heave)
+
+
+@vehicle_model
+def medusa(
+    vessel: VesselState,
+    command: Command,
+    water: Water,
+    memory: Thrusters,
+    dt: Seconds,
+    mass: Positive[Kilograms] = farol.MASS,
+    yaw_inertia: Positive[Inertia] = farol.YAW_INERTIA,
+    surge_added_mass: NotNegative[Kilograms] = farol.SURGE_ADDED_MASS,
+    sway_added_mass: NotNegative[Kilograms] = farol.SWAY_ADDED_MASS,
+    heave_added_mass: NotNegative[Kilograms] = farol.HEAVE_ADDED_MASS,
+    yaw_added_inertia: NotNegative[Inertia] = farol.YAW_ADDED_INERTIA,
+    surge_drag: NotNegative[LinearDrag] = farol.SURGE_DRAG,
+    sway_drag: NotNegative[LinearDrag] = farol.SWAY_DRAG,
+    heave_drag: NotNegative[LinearDrag] = farol.HEAVE_DRAG,
+    yaw_drag: NotNegative[LinearYawDrag] = farol.YAW_DRAG,
+    surge_drag_quadratic: NotNegative[QuadraticDrag] = farol.SURGE_DRAG_QUADRATIC,
+    sway_drag_quadratic: NotNegative[QuadraticDrag] = farol.SWAY_DRAG_QUADRATIC,
+    heave_drag_quadratic: NotNegative[QuadraticDrag] = farol.HEAVE_DRAG_QUADRATIC,
+    yaw_drag_quadratic: NotNegative[QuadraticYawDrag] = farol.YAW_DRAG_QUADRATIC,
+    thrust_coefficient: Positive[ThrustCoefficient] = farol.THRUST_COEFFICIENT,
+    max_shaft_speed: Positive[RadiansPerSecond] = farol.MAX_SHAFT_SPEED,
+    dead_zone: Annotated[float, Unit(""), Bounds(0.0, 1.0)] = farol.DEAD_ZONE,
+    motor_pole: Positive[PerSecond] = farol.MOTOR_POLE,
+    motor_delay: Annotated[float, Unit("s"), Bounds(0.0, 3.0)] = farol.MOTOR_DELAY,
+    thruster_arm: Positive[Meters] = farol.THRUSTER_ARM,
+) -> tuple[VesselState, Thrusters]:
+    """One plant step of a MEDUSA: thrusters with delay, lag, dead zone and saturation; a hull in 4 DOF.
+
+    Thrusters: n' = p (n_c(t - delay) - n),  F = c n |n|,  see `thrusters`. Hull: see `hull_step`.
+
+    The hull is neutrally buoyant. Farol computes the displaced volume from a sphere whose radius is
+    cbrt(m / ((3/4) pi rho)) instead of cbrt(3 m / (4 pi rho)) (AUV.cpp); that is 16/9 of the volume, 242 N of
+    buoyancy against 72 N of vertical thrust, and its vehicle could not dive. The surface holds: depth
+    never goes below zero. A vehicle that starts with a speed starts with the thrusters that hold it.
+
+    Args:
+        vessel: state before the step; velocities are through the water.
+        command: thrust [N], yaw moment [N m] and heave force [N] wanted.
+        water: current [m/s], held over the step.
+        memory: the thrusters.
+        dt: [s] plant step, at least motor_delay / 63.
+        mass: [kg] m.
+        yaw_inertia: [kg m^2] I_zz.
+        surge_added_mass: [kg] -X_udot.
+        sway_added_mass: [kg] -Y_vdot.
+        heave_added_mass: [kg] -Z_wdot.
+        yaw_added_inertia: [kg m^2] -N_rdot.
+        surge_drag: [N s/m] -X_u.
+        sway_drag: [N s/m] -Y_v.
+        heave_drag: [N s/m] -Z_w.
+        yaw_drag: [N m s] -N_r.
+        surge_drag_quadratic: [N s^2/m^2] -X_|u|u.
+        sway_drag_quadratic: [N s^2/m^2] -Y_|v|v.
+        heave_drag_quadratic: [N s^2/m^2] -Z_|w|w.
+        yaw_drag_quadratic: [N m s^2] -N_|r|r.
+        thrust_coefficient: [N s^2/rad^2] c of each thruster.
+        max_shaft_speed: [rad/s] either way.
+        dead_zone: [-] of max_shaft_speed; a smaller command does not turn the shaft.
+        motor_pole: [1/s] p.
+        motor_delay: [s] of every command.
+        thruster_arm: [m] of each horizontal thruster from the centre line.
+
+    Returns:
+        The state after the step, and the thrusters.
+
+    Source: dsor-isr/farol, `auv_sim` and the sim.yaml of its MEDUSA vehicles; the numbers in `medusa_data`.
+    """
+    hull = Hull(
+        mass + surge_added_mass,
+        mass + sway_added_mass,
+        1.0 / (mass + surge_added_mass),
+        1.0 / (mass + sway_added_mass),
+        1.0 / (mass + heave_added_mass),
+        1.0 / (yaw_inertia + yaw_added_inertia),
+        surge_drag,
+        sway_drag,
+        heave_drag,
+        yaw_drag,
+        surge_drag_quadratic,
+        sway_drag_quadratic,
+        heave_drag_quadratic,
+        yaw_drag_quadratic,
+    )
+    holding = 0.5 * drag(vessel.surge, surge_drag, surge_drag_quadratic)
+    before = started_thrusters(memory, holding, thrust_coefficient, dt, motor_pole, motor_delay)
+    slowest = dead_zone * max_shaft_speed
+    commanded = allocate(command, thruster_arm, thrust_coefficient, max_shaft_speed, slowest)
+    middle, after = turned_shafts(before, commanded)
+    start_forces = forces_of(ShaftSpeeds(before.port, before.starboard, before.vertical), thrust_coefficient)
+    middle_forces = forces_of(middle, thrust_coefficient)
+    forces = forces_of(ShaftSpeeds(after.port, after.starboard, after.vertical), thrust_coefficient)
+    push = push_of(forces, thruster_arm)
+    pose, velocity = hull_step(
+        hull,
+        Pose(vessel.north, vessel.east, vessel.depth, vessel.heading),
+        Velocity(vessel.surge, vessel.sway, vessel.heave, vessel.yaw_rate),
+        water,
+        push_of(start_forces, thruster_arm),
+        push_of(middle_forces, thruster_arm),
+        push,
+        dt,
+    )
+    flies = pose.depth < 0.0
+    vessel = VesselState(
+        pose.north,
+        pose.east,
+        where(flies, 0.0, pose.depth),
+        pose.heading,
+        velocity.surge,
+        velocity.sway,
+        where(flies & (velocity.heave < 0.0), 0.0, velocity.heave),
+        velocity.yaw_rate,
+        0.5 * (after.port + after.starboard),
+        push.thrust,
+        push.yaw_moment,
+        useful_power(forces, velocity, thruster_arm),
+    )
+    return vessel, after
