@@ -16,8 +16,8 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from cardume.compiler import Rows, SharedRows, as_real, at, compiled, load, store
-from cardume.compiler.calls import address, law_signature, make_jump, record_type
+from cardume.compiler import Rows, SharedRows, at, load, store
+from cardume.compiler.calls import address, call_python, define_verb, law_answer, law_signature, record_type
 from cardume.compiler.compiled import cached, source_stamp
 from cardume.compiler.reach import fingerprint, is_recursive, with_compiled_helpers
 
@@ -126,7 +126,6 @@ class Family:
         self.name, self.signals, self.result = name, signals, result
         self.place = FAMILIES.index(name)
         self.laws: dict[str, Law] = {}
-        self.jump = make_jump(signals, result)
         _families[name] = self
 
     def decorator(self, **common: float) -> Any:
@@ -141,29 +140,16 @@ class Family:
         return make
 
     def verb(self) -> Callable[..., Any]:
-        """A compiled function (book, slot, *signals) -> result; the slot chooses among several memories."""
-        names = [f"signal_{k}" for k in range(len(self.signals))]
-        packed = ", ".join(_widened(name, kind) for name, kind in zip(names, self.signals, strict=True))
+        """A function (book, slot, *signals) -> result; the slot chooses among several memories of the law."""
         first = self.place * COLUMNS
-        source = (
-            f"def call(book, slot, {', '.join(names)}):\n"
-            f"    row = at(book.handles, {first})\n"
-            f"    first = load(row, {MEMORY}) + slot * load(row, {WIDTH})\n"
-            f"    return jump(load(row, {HANDLE}), at(book.gains, load(row, {GAINS})),"
-            f" at(book.memory, first), book.dt, ({packed},))\n"
-        )
-        scope: dict[str, Any] = {"jump": self.jump, "load": load, "at": at, "as_real": as_real}
-        scope |= {k.__name__: k for k in self.signals if k is not float}
-        exec(compile(source, f"<verb of {self.name}>", "exec"), scope)
-        return compiled(scope["call"])
 
+        def call(book: LawBook, slot: int, *signals: Any) -> Any:
+            row = book.handles[first : first + COLUMNS]
+            memory = book.memory[row[MEMORY] + slot * row[WIDTH] :]
+            return call_python(row[HANDLE], (*signals, book.gains[row[GAINS] :], memory, book.dt))
 
-def _widened(name: str, kind: Any) -> str:
-    """Source text of a signal whose every number is as wide as the tables are."""
-    if kind is float:
-        return f"as_real(book.gains, {name})"
-    fields = ", ".join(f"as_real(book.gains, {name}.{f})" for f in kind._fields)
-    return f"{kind.__name__}({fields})"
+        define_verb(call, self.place, self.signals, self.result)
+        return call
 
 
 def law_family(
@@ -275,6 +261,10 @@ class Law:
     def _signal_names(self) -> str:
         return ", ".join(s.__name__ for s in self._family.signals)
 
+    def asks_for(self, signal: Any) -> bool:
+        """Whether the law takes a signal of its family."""
+        return f"signal_{self._family.signals.index(signal)}" in self._given
+
     def gains(self, **named: float) -> np.ndarray:
         """The row of gains: defaults overridden by name, checked against their bounds.
 
@@ -360,16 +350,12 @@ class Law:
         call = f"    answer, after = law({given})" if stores else f"    answer = law({given})"
         if self.memory_type is not None and not stores:
             call = f"    answer, after = law({given})"
-        result = self._family.result
-        answer = _widened("answer", result).replace("book.gains", "memory")
         signals = ", ".join(f"signal_{k}" for k in range(len(self._family.signals)))
-        body = "\n".join([call, *stores, f"    return {answer}"])
+        body = "\n".join([call, *stores, "    return as_answer(memory, answer)"])
         made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function))
         name = f"{self.family}_{self.name}_{made_of}_{'lanes' if lanes else 'scalar'}"
         scope = {"law": with_compiled_helpers(self.function), "Memory": self.memory_type}
-        scope |= {"load": load, "store": store, "at": at, "as_real": as_real}
-        if result is not float:
-            scope[result.__name__] = result
+        scope |= {"load": load, "store": store, "at": at, "as_answer": law_answer(self._family.result)}
         exec(compile(f"def {name}({signals}, gains, memory, dt):\n{body}", __file__, "exec"), scope)
         return scope[name]
 

@@ -90,9 +90,8 @@ def parse_quantity(given: float | str, unit: str) -> float:
         raise UnitError(f"'{given_unit}' is not a unit{_hint(given_unit, unit)}; valid here: {_valid(unit)}")
     found = UNITS[given_unit]
     if found.dimension != wanted.dimension:
-        raise UnitError(
-            f"{show_text(given)} is a {found.dimension}, but a {wanted.dimension} is needed; valid here: {_valid(unit)}"
-        )
+        what = f"{show_text(given)} is given in a unit of {found.dimension}, but one of {wanted.dimension} is needed"
+        raise UnitError(f"{what}; valid here: {_valid(unit)}")
     return _finite(value * found.factor)
 
 

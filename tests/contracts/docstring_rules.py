@@ -30,7 +30,7 @@ def vocabulary(sources: dict[Path, str]) -> Vocabulary:
     """Read `decorator, verb = law_family(...)` and `Meters = Annotated[float, Unit("m")]` wherever they stand."""
     decorators, units = set(), {}
     for text in sources.values():
-        for node in ast.parse(text).body:
+        for node in _statements(text):
             if not isinstance(node, ast.Assign):
                 continue
             target, value = node.targets[0], node.value
@@ -50,7 +50,7 @@ def complaints(text: str, where: str, words: Vocabulary) -> list[str]:
         where: its path below the package, which tells its layer.
         words: what `vocabulary` found.
     """
-    tree, lines = ast.parse(text), text.splitlines()
+    tree, lines = ast.parse(text, where), text.splitlines()
     words = words._replace(units=words.units | vocabulary({Path(where): text}).units)  # its own aliases before others
     layer = where.split("/")[0].removesuffix(".py")
     found = [] if ast.get_docstring(tree) or not tree.body else ["1: the module has no docstring"]
@@ -103,6 +103,14 @@ def _number_problems(node: FunctionNode, doc: str, known: frozenset[str], words:
             yield f"argument {name} lacks its [unit] ([-] a pure number, [any] whatever the others have)"
         elif unit and stated[0].strip("[]").replace("·", " ") != unit:
             yield f"argument {name} is in {stated[0]} by its docstring and in [{unit}] by its annotation"
+
+
+def _statements(text: str) -> list[ast.stmt]:
+    """The top of a file; of one that does not parse, nothing, so that only that file's own test fails."""
+    try:
+        return ast.parse(text).body
+    except SyntaxError:
+        return []
 
 
 def _unit_in(annotation: str) -> str | None:

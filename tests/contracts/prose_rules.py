@@ -2,9 +2,8 @@
 
 import ast
 
-LOOPS = (ast.For, ast.While)
 COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
-BLOCKS = (*LOOPS, ast.If, ast.With, ast.Try, ast.Match)
+BLOCKS = (ast.For, ast.While, ast.If, ast.With, ast.Try, ast.Match)
 MAX_LINES = 40
 
 
@@ -30,7 +29,7 @@ def complaints(node: ast.FunctionDef) -> list[str]:
             found.append(f"{inner.lineno}: {ast.unparse(inner)}: a raw index; name it with a record or an accessor")
         if isinstance(inner, (*COMPREHENSIONS, ast.Lambda, ast.FunctionDef)) and inner is not node:
             found.append(f"{inner.lineno}: {ast.unparse(inner).splitlines()[0]}: a hidden function or loop")
-    return found + _nesting(node.body, within=())
+    return found + _nesting(node.body)
 
 
 def _is_numeric(index: ast.expr) -> bool:
@@ -38,21 +37,20 @@ def _is_numeric(index: ast.expr) -> bool:
     return any(isinstance(part, ast.Constant) and isinstance(part.value, int | float) for part in ast.walk(index))
 
 
-def _nesting(body: list[ast.stmt], within: tuple[ast.stmt, ...]) -> list[str]:
-    """Blocks may stand at the top or directly in one loop; an elif is not a deeper level."""
+def _nesting(body: list[ast.stmt], outer: ast.stmt | None = None) -> list[str]:
+    """A block stands at the top and holds no other block; an elif is not a deeper level."""
     found = []
     for node in body:
-        if not isinstance(node, BLOCKS):
-            continue
-        kind = type(node).__name__.lower()
-        if isinstance(node, LOOPS) and any(isinstance(outer, LOOPS) for outer in within):
-            found.append(f"{node.lineno}: `{kind}` within a loop: name the inner one")
-        elif within and not (len(within) == 1 and isinstance(within[0], LOOPS)):
-            outer_kind = type(within[-1]).__name__.lower()
-            found.append(f"{node.lineno}: `{kind}` within `{outer_kind}`: nested deeper than one loop")
-        for inner in _bodies(node):
-            found += _nesting(inner, within if _is_elif(node, inner) else (*within, node))
+        if isinstance(node, BLOCKS):
+            if outer is not None:
+                found.append(f"{node.lineno}: `{_kind(node)}` within `{_kind(outer)}`: name the inner one")
+            for inner in _bodies(node):
+                found += _nesting(inner, outer if _is_elif(node, inner) else node)
     return found
+
+
+def _kind(node: ast.stmt) -> str:
+    return type(node).__name__.lower()
 
 
 def _is_elif(node: ast.stmt, inner: list[ast.stmt]) -> bool:

@@ -45,7 +45,9 @@ LAWS = (
     FakeLaw("position", "reset"),
     FakeLaw("neighbors", "coordinated"),
     FakeLaw("coordination", "none"),
-    FakeLaw("coordination", "laplacian_tanh", (P("gain", 0.2, "m/s", 0.0), P("length_scale", 1.0, "m", 0.0, 1e3, True))),
+    FakeLaw(
+        "coordination", "laplacian_tanh", (P("gain", 0.2, "m/s", 0.0), P("length_scale", 1.0, "m", 0.0, 1e3, True))
+    ),
     FakeLaw("messaging", "silent"),
     FakeLaw("messaging", "periodic", (P("period", 1.0, "s", 0.0, math.inf, low_open=True),)),
     FakeLaw("speed", "from_shaft", (P("scale", 1.0, "", 0.0, 10.0),)),

@@ -56,7 +56,7 @@ def own_length(path: ReferencePath, gamma: float, offset: float) -> float:
 
 @st.composite
 def scenes(draw: st.DrawFn) -> tuple[ReferencePath, float, float, float]:
-    """A path, an offset that fits, a gamma on it or beyond its ends, and a cross-track error short of any centre."""
+    """A path, an offset that fits, a gamma on it or beyond its ends, and a cross-track error short of any center."""
     path = draw(paths)
     tightest = max((abs(s.curvature) for s in path), default=0.0)
     room = min(0.9 / tightest if tightest else 50.0, 50.0)

@@ -15,11 +15,11 @@ from cardume.paths.segment import Start
 from cardume.paths.table import PathPlace, start_at
 from cardume.signals import PathError, Place
 
-CLOCKWISE = offset_path(arc(Start(), 12.0, "starboard", math.pi), speed=0.5)  # centre 12 m east of the start
+CLOCKWISE = offset_path(arc(Start(), 12.0, "starboard", math.pi), speed=0.5)  # center 12 m east of the start
 
 
 def on_arc(rho: float, progress: float, path: np.ndarray = CLOCKWISE, radius: float = 12.0) -> PathError:
-    """Seen at distance rho from the centre of a clockwise arc, an angle further on than its start."""
+    """Seen at distance rho from the center of a clockwise arc, an angle further on than its start."""
     place = Place(rho * math.sin(progress), radius - rho * math.cos(progress), path)
     return project(place, start_at(path, radius * progress))[0]
 
@@ -39,7 +39,7 @@ def test_51_counts_meters_and_does_not_wrap() -> None:
     """A half circle of 12 m is 37.699112 m, not 3.141593; the printed difference of bearings jumps by 6.283185."""
     assert on_arc(12.0, math.pi).path_parameter == pytest.approx(37.699112, abs=5e-7)
     path = offset_path(arc(Start(), 12.0, "starboard", 6.0), speed=0.5)
-    around = 1.5 * math.pi + np.array([-1e-9, 1e-9])  # where the bearing from the centre passes south
+    around = 1.5 * math.pi + np.array([-1e-9, 1e-9])  # where the bearing from the center passes south
     bearings = [math.atan2(-12.0 * math.cos(p), 12.0 * math.sin(p)) for p in around]
     assert bearings[1] - bearings[0] == pytest.approx(-6.283185, abs=1e-6)
     seen = [on_arc(12.0, p, path).path_parameter for p in around]

@@ -96,6 +96,18 @@ def test_corners_stay_corners() -> None:
     assert [round(math.degrees(math.remainder(t, 2.0 * math.pi))) for t in turns] == [90, 90, -63]
 
 
+def test_a_curve_drawn_with_short_lines_keeps_its_corners() -> None:
+    """Each kink of 0.5 deg over 1 m is within rounding, but forty of them are not."""
+    points = [(114.59 * math.sin(a), 114.59 * (1.0 - math.cos(a))) for a in np.radians(0.5 * np.arange(41))]
+    joined = join([Section(start=a, end=b) for a, b in zip(points, points[1:], strict=False)])
+    assert end_of(joined[-1])[:2] == pytest.approx(points[-1], abs=1e-6)
+
+
+def test_a_line_in_two_collinear_parts_has_no_corner() -> None:
+    joined = join([Section(start=(0.0, 0.0), end=(20.0, 0.01)), Section(start=(20.0, 0.01), end=(50.0, 0.02))])
+    assert joined[0].course == joined[1].course
+
+
 def test_corners_stay_where_one_window_ends_and_the_next_begins() -> None:
     points = [(10.0 * k, 4.0 * (k % 2)) for k in range(230)]
     joined = join([Section(start=a, end=b) for a, b in zip(points, points[1:], strict=False)])

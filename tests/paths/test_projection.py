@@ -117,7 +117,7 @@ def test_it_agrees_with_a_search_over_all_points_of_the_path() -> None:
             assert abs(error.arc_length - s[distance.argmin()]) < 0.02
 
 
-# ---- before the start, past the end, far away, at the centre ---------------------------------------------------------
+# ---- before the start, past the end, far away, at the center ---------------------------------------------------------
 
 
 @pytest.mark.parametrize("turn", ["starboard", "port"])
@@ -220,6 +220,16 @@ def test_a_leap_over_many_segments_takes_a_bounded_number_of_moves_a_tick() -> N
     path = offset_path(chain(Start(), [straight(1.0)] * 20))
     seen = walk(path, [(15.5, 0.0)] * 5)
     assert [x.arc_length for x in seen] == pytest.approx([5.0, 9.0, 13.0, 15.5, 15.5])
+    assert {x.finished for x in seen} == {0.0}
+
+
+def test_a_leap_back_over_more_than_a_lap_of_an_arc_finds_the_arc() -> None:
+    """A fix may move a vehicle from 40 m beyond a turn of 4 m radius back into it."""
+    path = offset_path(lawnmower(Start(), 60.0, 3, 8.0))
+    there = point_at(path, 60.0 + 4.0)
+    assert see(path, there.north, there.east, PathPlace(2.0, 60.0 + 4.0 * math.pi + 40.0)).arc_length == pytest.approx(
+        64.0
+    )
 
 
 @pytest.mark.parametrize("angle", [0.7, -0.7, 2.0])
@@ -232,7 +242,9 @@ def test_outside_a_sharp_corner_gamma_waits_and_then_goes_on(angle: float) -> No
     places = [(float(n), side) for n in np.arange(10.0, 20.1, 0.5)]
     places += [(20.0 - side * math.sin(a), side * math.cos(a)) for a in bend]
     places += [beside((first, second), g, side)[:2] for g in np.arange(20.1, 30.0, 0.5)]
-    seen = [x.arc_length for x in walk(path, places)]
+    errors = walk(path, places)
+    seen = [x.arc_length for x in errors]
+    assert errors[25].path_course == pytest.approx(angle)
     assert np.diff(seen).min() > -1e-9
     assert np.diff(seen).max() < 0.5 + 1e-9
     assert seen[25] == pytest.approx(20.0, abs=1e-9)

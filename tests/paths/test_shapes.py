@@ -39,7 +39,7 @@ def test_arc_turns_to_its_side(turn: str, sigma: float) -> None:
 def test_circle_starts_at_its_bearing_and_stays_at_its_radius(turn: str, sigma: float) -> None:
     (lap,) = circle(Center(5.0, -3.0), 7.0, turn, start_bearing=EAST)
     assert (lap.north, lap.east) == pytest.approx((5.0, 4.0))
-    # east of the centre a clockwise vehicle goes south
+    # east of the center a clockwise vehicle goes south
     assert math.cos(lap.course) == pytest.approx(-sigma)
     assert lap.length > 1000.0 * 2.0 * math.pi * 7.0
     assert end_of(arc(Start(lap.north, lap.east, lap.course), 7.0, turn, math.pi)[0])[:2] == pytest.approx((5.0, -10.0))

@@ -14,15 +14,13 @@ from cardume.compiler.lanes import (
     where,
 )
 from cardume.compiler.records import Layout
-from cardume.compiler.rows import Rows, SharedRows, as_mask, as_real, at, gather, load, rows_of, scatter, store
+from cardume.compiler.rows import Rows, SharedRows, at, gather, load, rows_of, scatter, store
 
 __all__ = [
     "WIDTH",
     "Layout",
     "Rows",
     "SharedRows",
-    "as_mask",
-    "as_real",
     "at",
     "compiled",
     "entry",

@@ -6,15 +6,16 @@ lanes is called once per lane; its handle is then negative.  Handles live in one
 """
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from llvmlite import ir
 from numba import config, types
 from numba.core import cgutils
-from numba.extending import intrinsic, overload
 
 from cardume.compiler.lanes import INT32, INT64, LANES, WIDTH
-from cardume.compiler.rows import LANE_ROWS, ROWS, Rows, SharedRows, lane_of
+from cardume.compiler.primitive import primitive
+from cardume.compiler.rows import LANE_ROWS, ROWS, Rows, SharedRows, as_law_sees, lane_of, make_rows, row_address
 
 _python_laws: list[Callable[..., Any]] = []  # NUMBA_DISABLE_JIT: a handle is a place in this list
 
@@ -38,62 +39,85 @@ def law_signature(signals: tuple[Any, ...], result: Any, lanes: bool) -> Any:
     return record_type(result, lanes)(*arguments, rows, rows, types.float64)
 
 
-def make_jump(signals: tuple[Any, ...], result: Any) -> Callable[..., Any]:
-    """The function by which compiled code calls a law of this family.
+def define_verb(verb: Callable[..., Any], place: int, signals: tuple[Any, ...], result: Any) -> None:
+    """Let compiled code call a verb: look the law up in the book and jump to it.
 
     Args:
+        verb: (book, slot, *signals) in plain Python.
+        place: [-] of the family in the book.
         signals: record classes.
         result: float, a record class, or a tuple of them.
-
-    Returns:
-        jump(handle, gains, memory, dt, *signals) -> result
     """
     scalar = law_signature(signals, result, lanes=False)
     wide = law_signature(signals, result, lanes=True)
 
-    @intrinsic
-    def jump_scalar(context: Any, handle: Any, gains: Any, memory: Any, dt: Any, given: Any) -> Any:
-        def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-            handle, gains, memory, dt, given = arguments
-            parts = cgutils.unpack_tuple(b, given, len(signals))
-            return _call(c, b, scalar, handle, [*parts, gains, memory, dt])
+    def typed(book: Any, slot: Any, *given: Any) -> Any:
+        law = wide if LANE_ROWS in book.types else scalar
+        return law.return_type(book, types.int64, *given)
 
-        pack = types.BaseTuple.from_types(list(scalar.args[: len(signals)]))
-        return scalar.return_type(types.int64, ROWS, ROWS, types.float64, pack), generate
+    @primitive(verb, typed)
+    def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+        book_type, book, slot = signature.args[0], arguments[0], arguments[1]
+        law = wide if LANE_ROWS in book_type.types else scalar
+        handles, gains, memory, dt = cgutils.unpack_tuple(b, book, len(book_type.types))
+        columns = [b.gep(handles, [ir.Constant(INT64, place * 4 + k)]) for k in range(4)]
+        handle, gain, first, width = [b.load(column) for column in columns]
+        gains = row_address(c, b, book_type.types[1], gains, gain)
+        memory = row_address(c, b, book_type.types[2], memory, b.add(first, b.mul(slot, width)))
+        parts = [
+            as_law_sees(c, b, value, kind, wanted)
+            for value, kind, wanted in zip(arguments[2:], signature.args[2:], law.args, strict=False)
+        ]
+        if law is wide:
+            return _call_lanes(c, b, wide, scalar, handle, parts, gains, memory, dt)
+        rows = [make_rows(c, b, table, ir.Constant(INT64, 1)) for table in (gains, memory)]
+        return _call(c, b, scalar, handle, [*parts, *rows, dt])
 
-    @intrinsic
-    def jump_lanes(context: Any, handle: Any, gains: Any, memory: Any, dt: Any, given: Any) -> Any:
-        def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-            handle, gains, memory, dt, given = arguments
-            parts = cgutils.unpack_tuple(b, given, len(signals))
-            answer = cgutils.alloca_once(b, c.get_value_type(wide.return_type))
-            vectorized = b.icmp_signed(">", handle, ir.Constant(INT64, 0))
-            with b.if_else(vectorized) as (whole, each):
-                with whole:
-                    b.store(_call(c, b, wide, handle, [*parts, gains, memory, dt]), answer)
-                with each, cgutils.for_range(b, ir.Constant(INT64, WIDTH)) as loop:
-                    one = [
-                        _lane_value(c, b, part, kind, loop.index)
-                        for part, kind in zip(parts, wide.args, strict=False)
-                    ]
-                    rows = [lane_of(c, b, gains, loop.index), lane_of(c, b, memory, loop.index)]
-                    value = _call(c, b, scalar, b.neg(handle), [*one, *rows, dt])
-                    _put_lane(c, b, answer, value, wide.return_type, loop.index)
-            return b.load(answer)
 
-        pack = types.BaseTuple.from_types(list(wide.args[: len(signals)]))
-        return wide.return_type(types.int64, LANE_ROWS, LANE_ROWS, types.float64, pack), generate
+def _call_lanes(
+    c: Any, b: Any, wide: Any, scalar: Any, handle: Any, parts: Any, gains: Any, memory: Any, dt: Any
+) -> Any:
+    """Call a law for eight missions at once, or one after the other where it does not compile for lanes."""
+    answer = cgutils.alloca_once(b, c.get_value_type(wide.return_type))
+    with b.if_else(b.icmp_signed(">", handle, ir.Constant(INT64, 0))) as (whole, each):
+        with whole:
+            b.store(_call(c, b, wide, handle, [*parts, gains, memory, dt]), answer)
+        with each, cgutils.for_range(b, ir.Constant(INT64, WIDTH)) as loop:
+            one = [_lane_value(c, b, p, kind, loop.index) for p, kind in zip(parts, wide.args, strict=False)]
+            rows = [lane_of(c, b, gains, loop.index), lane_of(c, b, memory, loop.index)]
+            value = _call(c, b, scalar, b.neg(handle), [*one, *rows, dt])
+            _put_lane(c, b, answer, value, wide.return_type, loop.index)
+    return b.load(answer)
 
-    def jump(handle: int, gains: Rows, memory: Rows, dt: float, given: Any) -> Any:
-        return _python_laws[handle](*given, gains, memory, dt)
 
-    @overload(jump, strict=False)
-    def compiled_jump(handle: Any, gains: Any, memory: Any, dt: Any, given: Any) -> Any:
-        if gains is LANE_ROWS:
-            return lambda handle, gains, memory, dt, given: jump_lanes(handle, gains, memory, dt, given)
-        return lambda handle, gains, memory, dt, given: jump_scalar(handle, gains, memory, dt, given)
+@cache
+def law_answer(result: Any) -> Callable[..., Any]:
+    """A function (rows, answer) that makes what a law returned as wide as the rows it was given.
 
-    return jump
+    Args:
+        result: float, a record class, or a tuple of them.
+    """
+
+    def as_answer(rows: Rows, answer: Any) -> Any:
+        return answer
+
+    def typed(rows: Any, answer: Any) -> Any:
+        wanted = record_type(result, rows is LANE_ROWS)
+        fits = not isinstance(wanted, types.BaseTuple) or (
+            isinstance(answer, types.BaseTuple) and len(answer) == len(wanted)
+        )
+        return wanted(rows, answer) if fits else None
+
+    @primitive(as_answer, typed)
+    def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+        return as_law_sees(c, b, arguments[1], signature.args[1], signature.return_type)
+
+    return as_answer
+
+
+def call_python(handle: int, arguments: tuple[Any, ...]) -> Any:
+    """Call a law in plain Python, under NUMBA_DISABLE_JIT."""
+    return _python_laws[handle](*arguments)
 
 
 def address(dispatcher: Any, signature: Any) -> int:

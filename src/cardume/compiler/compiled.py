@@ -9,6 +9,7 @@ them is a new name.
 """
 
 import hashlib
+import inspect
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -44,7 +45,10 @@ def compiled(function: F) -> F:
     """
 
     # A new code object for each number type: Numba compiles `function` itself, inlined where it pays.
-    @overload(function, strict=False, jit_options=OPTIONS)
+    first = next(iter(inspect.signature(function).parameters), "")
+    inlined = {"forceinline": True} if first in ("fleet", "mind") else {}
+
+    @overload(function, strict=False, jit_options=OPTIONS | inlined)
     def specialized(*arguments: Any) -> Callable[..., Any]:
         return function
 

@@ -16,6 +16,8 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic, models, overload, register_model
 
+from cardume.compiler.primitive import primitive
+
 WIDTH = 8
 
 DOUBLE, INT64, INT32 = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
@@ -218,11 +220,6 @@ def _floor(x: Any) -> Any:
     return (lambda x: _lane_floor(x)) if x is LANES else (lambda x: np.floor(x))
 
 
-@intrinsic
-def _select(context: Any, mask: Any, x: Any, y: Any) -> Any:
-    return LANES(MASK, LANES, LANES), lambda c, b, s, arguments: b.select(*arguments)
-
-
 def where(condition: bool, chosen: Any, otherwise: Any) -> Any:
     """`chosen` where the condition holds, else `otherwise`: numbers, or equal records field by field.
 
@@ -237,36 +234,55 @@ def where(condition: bool, chosen: Any, otherwise: Any) -> Any:
     return chosen if condition else otherwise
 
 
-@overload(where, strict=False)
-def _where(condition: Any, chosen: Any, otherwise: Any) -> Any:
+def _common_type(condition: Any, chosen: Any, otherwise: Any) -> Any:
+    """What `where` gives: as wide as the widest of the three; tables are the same on both sides."""
     if isinstance(chosen, types.BaseNamedTuple):
-        return _where_record(chosen)
-    if isinstance(condition, MaskType):
-        if chosen is LANES and otherwise is LANES:
-            return lambda condition, chosen, otherwise: _select(condition, chosen, otherwise)
-        if chosen is LANES:
-            return lambda condition, chosen, otherwise: _select(condition, chosen, splat(float(otherwise)))
-        if otherwise is LANES:
-            return lambda condition, chosen, otherwise: _select(condition, splat(float(chosen)), otherwise)
-        return lambda condition, chosen, otherwise: _select(
-            condition, splat(float(chosen)), splat(float(otherwise))
-        )
-    return lambda condition, chosen, otherwise: chosen if condition else otherwise
+        pairs = zip(chosen.types, otherwise.types, strict=True)
+        fields = [_common_type(condition, a, b) for a, b in pairs]
+        return types.BaseTuple.from_types(fields, chosen.instance_class)
+    numbers = [chosen, otherwise]
+    if LANES in numbers or (condition is MASK and all(is_number(n) for n in numbers)):
+        return LANES
+    if MASK in numbers or (condition is MASK and isinstance(chosen, types.Boolean)):
+        return MASK
+    if any(isinstance(n, types.Float) for n in numbers):
+        return types.float64
+    return types.int64 if isinstance(chosen, types.Integer) else chosen
 
 
-def _where_record(record: Any) -> Any:
-    """`where` field by field; rows (tables) are the same in both and pass through."""
-    numeric = [k is LANES or is_number(k) for k in record.types]
-    parts = [
-        f"where(condition, chosen.{f}, otherwise.{f})" if n else f"chosen.{f}"
-        for f, n in zip(record.fields, numeric, strict=True)
-    ]
-    scope = {"where": where, "Record": record.instance_class}
-    exec(f"def choose(condition, chosen, otherwise): return Record({', '.join(parts)})", scope)
-    return scope["choose"]
+def _where_type(condition: Any, chosen: Any, otherwise: Any) -> Any:
+    truth = MASK if condition is MASK else types.boolean
+    return _common_type(condition, chosen, otherwise)(truth, chosen, otherwise)
 
 
-_invert = _unary_intrinsic(lambda b, x: b.not_(x), MASK, MASK)
+@primitive(where, _where_type)
+def _where(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    condition, chosen, otherwise = arguments
+    _, chosen_type, otherwise_type = signature.args
+
+    def choose(x: Any, x_type: Any, y: Any, y_type: Any, result: Any) -> Any:
+        if isinstance(result, types.BaseTuple):
+            parts = [
+                choose(b.extract_value(x, k), x_type.types[k], b.extract_value(y, k), y_type.types[k], kind)
+                for k, kind in enumerate(result.types)
+            ]
+            return c.make_tuple(b, result, parts)
+        if result in (LANES, MASK) or is_number(result) or isinstance(result, types.Boolean):
+            return b.select(condition, widened(c, b, x, x_type, result), widened(c, b, y, y_type, result))
+        return x
+
+    return choose(chosen, chosen_type, otherwise, otherwise_type, signature.return_type)
+
+
+def widened(c: Any, b: Any, value: Any, kind: Any, wanted: Any) -> Any:
+    """LLVM code that makes a number as wide as wanted: itself, or the same in all lanes."""
+    if kind == wanted:
+        return value
+    if wanted is LANES:
+        return spread(b, c.cast(b, value, kind, types.float64), DOUBLES)
+    if wanted is MASK:
+        return spread(b, value, BOOLS)
+    return c.cast(b, value, kind, wanted)
 
 
 def negate(condition: bool) -> bool:
@@ -274,17 +290,9 @@ def negate(condition: bool) -> bool:
     return not condition
 
 
-@overload(negate, strict=False)
-def _negate(condition: Any) -> Any:
-    return (lambda condition: _invert(condition)) if condition is MASK else (lambda condition: not condition)
-
-
-def _any_lane(b: Any, mask: Any) -> Any:
-    packed = b.bitcast(mask, ir.IntType(WIDTH))
-    return b.icmp_unsigned("!=", packed, ir.Constant(ir.IntType(WIDTH), 0))
-
-
-_some = _unary_intrinsic(_any_lane, MASK, types.boolean)
+@primitive(negate, lambda condition: condition(condition))
+def _negate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    return b.not_(arguments[0])
 
 
 def some(condition: bool) -> bool:
@@ -292,9 +300,12 @@ def some(condition: bool) -> bool:
     return condition
 
 
-@overload(some, strict=False)
-def _some_lane(condition: Any) -> Any:
-    return (lambda condition: _some(condition)) if condition is MASK else (lambda condition: condition)
+@primitive(some, lambda condition: types.boolean(condition))
+def _some(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    if signature.args[0] is not MASK:
+        return arguments[0]
+    packed = b.bitcast(arguments[0], ir.IntType(WIDTH))
+    return b.icmp_unsigned("!=", packed, ir.Constant(ir.IntType(WIDTH), 0))
 
 
 def _constant(kind: Any, value: int) -> Any:

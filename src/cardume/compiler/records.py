@@ -1,14 +1,19 @@
 """Records in tables: accessors that compile to plain loads and stores.
 
-A record is a `NamedTuple` of floats.  A `Layout` says at which rows of a vehicle's table each
-record lies, and writes the functions that read and write it there; raw indices live only here.
+A record is a `NamedTuple` of floats.  A `Layout` says at which rows of an owner's part of a table
+each record lies, and makes the functions that read and write it there; raw indices live only here.
 """
 
 from collections.abc import Callable
 from typing import Any
 
+from llvmlite import ir
+from numba import types
+
 from cardume.compiler.compiled import compiled
-from cardume.compiler.rows import at, gather, load, store
+from cardume.compiler.lanes import INT64, widened
+from cardume.compiler.primitive import primitive
+from cardume.compiler.rows import ELEMENTS, gather, load_row, row_address, store_row
 
 
 class Layout:
@@ -22,37 +27,64 @@ class Layout:
             self.width += len(record._fields)
 
     def reader(self, record: type[Any]) -> Callable[..., Any]:
-        """A compiled function (table, owner) -> record."""
-        start = self.offsets[record]
-        fields = ", ".join(f"load(rows, {start + k})" for k in range(len(record._fields)))
-        return self._write(
-            f"def get(table, owner):\n    rows = at(table, owner * {self.width})\n    return Record({fields})",
-            record,
-        )
+        """A function (table, owner) -> record."""
+        width, start, size = self.width, self.offsets[record], len(record._fields)
+
+        def get(table: Any, owner: int) -> Any:
+            first = owner * width + start
+            return record(*table[first : first + size])
+
+        def typed(table: Any, owner: Any) -> Any:
+            if table not in ELEMENTS:
+                return None
+            return types.BaseTuple.from_types([ELEMENTS[table]] * size, record)(table, types.int64)
+
+        @primitive(get, typed)
+        def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+            kind, places = signature.args[0], _places(c, b, signature, arguments, width, start, size)
+            return c.make_tuple(b, signature.return_type, [load_row(b, kind, place) for place in places])
+
+        return get
 
     def writer(self, record: type[Any]) -> Callable[..., Any]:
-        """A compiled function (table, owner, record) that stores the record."""
-        start = self.offsets[record]
-        stores = "\n".join(
-            f"    store(rows, {start + k}, record.{field})" for k, field in enumerate(record._fields)
-        )
-        return self._write(
-            f"def put(table, owner, record):\n    rows = at(table, owner * {self.width})\n{stores}", record
-        )
+        """A function (table, owner, record) that stores the record."""
+        width, start, size = self.width, self.offsets[record], len(record._fields)
+
+        def put(table: Any, owner: int, value: Any) -> None:
+            first = owner * width + start
+            table[first : first + size] = value
+
+        def typed(table: Any, owner: Any, value: Any) -> Any:
+            fits = isinstance(value, types.BaseTuple) and len(value) == size and table in ELEMENTS
+            return types.void(table, types.int64, value) if fits else None
+
+        @primitive(put, typed)
+        def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+            kind, _, given = signature.args
+            for k, place in enumerate(_places(c, b, signature, arguments, width, start, size)):
+                part = b.extract_value(arguments[2], k)
+                store_row(b, kind, place, widened(c, b, part, given.types[k], ELEMENTS[kind]))
+            return c.get_dummy_value()
+
+        return put
 
     def picker(self, record: type[Any]) -> Callable[..., Any]:
-        """A compiled function (table, owner) -> record whose owner is a signal and may differ by lane."""
+        """A function (table, owner) -> record whose owner is a signal and may differ from lane to lane."""
         start = self.offsets[record]
         fields = ", ".join(f"gather(table, row + {start + k}.0)" for k in range(len(record._fields)))
-        return self._write(
-            f"def get(table, owner):\n    row = owner * {self.width}.0\n    return Record({fields})", record
-        )
+        source = f"def pick(table, owner):\n    row = owner * {self.width}.0\n    return Record({fields})"
+        scope: dict[str, Any] = {"Record": record, "gather": gather}
+        exec(compile(source, f"<{record.__name__} in a table>", "exec"), scope)
+        return compiled(scope["pick"])
 
     def column(self, record: type[Any], field: str) -> int:
         """The row of one field, counted from the owner's first."""
         return self.offsets[record] + record._fields.index(field)
 
-    def _write(self, source: str, record: type[Any]) -> Callable[..., Any]:
-        scope: dict[str, Any] = {"Record": record, "load": load, "store": store, "at": at, "gather": gather}
-        exec(compile(source, f"<{record.__name__} in a table>", "exec"), scope)
-        return compiled(scope["get" if "get" in scope else "put"])
+
+def _places(c: Any, b: Any, signature: Any, arguments: Any, width: int, start: int, size: int) -> list[Any]:
+    """LLVM addresses of the rows of a record."""
+    table, owner = arguments[:2]
+    first = b.add(b.mul(owner, ir.Constant(INT64, width)), ir.Constant(INT64, start))
+    rows = [b.add(first, ir.Constant(INT64, k)) for k in range(size)]
+    return [row_address(c, b, signature.args[0], table, row) for row in rows]

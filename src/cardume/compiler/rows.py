@@ -1,10 +1,10 @@
 """Rows: a column of numbers in a table, one float64 each, or eight missions each.
 
-A mission's state is plain tables of float64.  Compiled code sees a table as `Rows`, a bare
-pointer with a stride, or as `LaneRows`, a pointer whose every row is a register of eight missions;
-array views in the inner loop cost 15 to 20 %.  Because `Rows` carries its stride, a law that does
-not compile for lanes can be shown one lane of a `LaneRows` table.  `Ints` is a table of whole
-numbers, the same for all lanes.  In plain Python all of them are one-dimensional numpy arrays.
+A mission's state is plain tables of float64.  The engine sees a table as `FlatRows`, a bare
+pointer, or as `LaneRows`, a pointer whose every row is a register of eight missions; array views in
+the inner loop cost 15 to 20 %.  A law sees `Rows`, a pointer with a stride: so a law that does not
+compile for lanes can be shown one lane of a `LaneRows` table.  `Ints` is a table of whole numbers,
+the same for all lanes.  In plain Python all of them are one-dimensional numpy arrays.
 """
 
 from typing import Any
@@ -13,9 +13,10 @@ import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic, models, overload, register_model, typeof_impl
+from numba.extending import models, register_model
 
-from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, is_number, splat
+from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, widened
+from cardume.compiler.primitive import primitive
 
 Rows = np.ndarray  # (k,) float64; how laws and records annotate a table
 
@@ -29,6 +30,13 @@ class RowsType(types.Type):
 
     def __init__(self) -> None:
         super().__init__(name="Rows")
+
+
+class FlatRowsType(types.Type):
+    """Numba type of a column of float64 without gaps."""
+
+    def __init__(self) -> None:
+        super().__init__(name="FlatRows")
 
 
 class LaneRowsType(types.Type):
@@ -45,8 +53,8 @@ class IntsType(types.Type):
         super().__init__(name="Ints")
 
 
-ROWS, LANE_ROWS, INTS = RowsType(), LaneRowsType(), IntsType()
-TABLES = (ROWS, LANE_ROWS, INTS)
+ROWS, FLAT_ROWS, LANE_ROWS, INTS = RowsType(), FlatRowsType(), LaneRowsType(), IntsType()
+ELEMENTS = {ROWS: types.float64, FLAT_ROWS: types.float64, LANE_ROWS: LANES, INTS: types.int64}
 
 
 @register_model(RowsType)
@@ -62,6 +70,7 @@ def _register_pointer(kind: type[types.Type], pointee: Any) -> None:
             super().__init__(manager, fe_type, pointee.as_pointer())
 
 
+_register_pointer(FlatRowsType, DOUBLE)
 _register_pointer(LaneRowsType, DOUBLE)
 _register_pointer(IntsType, INT64)
 
@@ -78,19 +87,6 @@ def lane_of(context: Any, builder: Any, lane_rows: Any, lane: Any) -> Any:
     return make_rows(context, builder, builder.gep(lane_rows, [lane]), ir.Constant(INT64, WIDTH))
 
 
-@intrinsic
-def _rows_of_array(context: Any, array: Any) -> Any:
-    kind = {(1, types.float64): ROWS, (2, types.float64): LANE_ROWS, (1, types.int64): INTS}[
-        (array.ndim, array.dtype)
-    ]
-
-    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-        data = c.make_array(s.args[0])(c, b, arguments[0]).data
-        return make_rows(c, b, data, ir.Constant(INT64, 1)) if kind is ROWS else data
-
-    return kind(array), generate
-
-
 def rows_of(array: np.ndarray) -> Rows:
     """The rows of a contiguous array, which must stay alive meanwhile.
 
@@ -98,17 +94,22 @@ def rows_of(array: np.ndarray) -> Rows:
         array: (k,) float64, (k, 8) float64 for eight missions, or (k,) int64.
 
     Returns:
-        Rows, LaneRows or Ints; in plain Python the array itself.
+        FlatRows, LaneRows or Ints; in plain Python the array itself.
     """
     return array
 
 
-@overload(rows_of, strict=False)
-def _rows_of(array: Any) -> Any:
-    return lambda array: _rows_of_array(array)
+def _rows_type(array: Any) -> Any:
+    kinds = {(1, types.float64): FLAT_ROWS, (2, types.float64): LANE_ROWS, (1, types.int64): INTS}
+    return kinds[array.ndim, array.dtype](array)
 
 
-def _address(c: Any, b: Any, kind: Any, table: Any, k: Any) -> Any:
+@primitive(rows_of, _rows_type)
+def _rows_of(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    return c.make_array(signature.args[0])(c, b, arguments[0]).data
+
+
+def row_address(c: Any, b: Any, kind: Any, table: Any, k: Any) -> Any:
     """LLVM pointer to row k."""
     if kind is ROWS:
         rows = cgutils.create_struct_proxy(ROWS)(c, b, table)
@@ -116,19 +117,6 @@ def _address(c: Any, b: Any, kind: Any, table: Any, k: Any) -> Any:
     if kind is LANE_ROWS:
         return b.gep(table, [b.mul(k, ir.Constant(INT64, WIDTH))])
     return b.gep(table, [k])
-
-
-@intrinsic
-def _load(context: Any, table: Any, k: Any) -> Any:
-    element = {ROWS: types.float64, LANE_ROWS: LANES, INTS: types.int64}[table]
-
-    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-        place = _address(c, b, s.args[0], *arguments)
-        if s.args[0] is LANE_ROWS:
-            return b.load(b.bitcast(place, DOUBLES.as_pointer()), align=8)
-        return b.load(place)
-
-    return element(table, types.int64), generate
 
 
 def load(table: Rows, k: int) -> Any:
@@ -144,23 +132,24 @@ def load(table: Rows, k: int) -> Any:
     return table[k]
 
 
-@overload(load, strict=False)
-def _overload_load(table: Any, k: Any) -> Any:
-    return (lambda table, k: _load(table, k)) if table in TABLES else (lambda table, k: table[k])
+@primitive(load, lambda table, k: ELEMENTS[table](table, types.int64) if table in ELEMENTS else None)
+def _load(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    return load_row(b, signature.args[0], row_address(c, b, signature.args[0], *arguments))
 
 
-@intrinsic
-def _store(context: Any, table: Any, k: Any, value: Any) -> Any:
-    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-        place = _address(c, b, s.args[0], *arguments[:2])
-        if s.args[0] is LANE_ROWS:
-            b.store(arguments[2], b.bitcast(place, DOUBLES.as_pointer()), align=8)
-        else:
-            b.store(arguments[2], place)
-        return c.get_dummy_value()
+def load_row(b: Any, kind: Any, place: Any) -> Any:
+    """LLVM code that reads the row at an address."""
+    if kind is LANE_ROWS:
+        return b.load(b.bitcast(place, DOUBLES.as_pointer()), align=8)
+    return b.load(place)
 
-    element = {ROWS: types.float64, LANE_ROWS: LANES, INTS: types.int64}[table]
-    return types.void(table, types.int64, element), generate
+
+def store_row(b: Any, kind: Any, place: Any, value: Any) -> None:
+    """LLVM code that writes the row at an address."""
+    if kind is LANE_ROWS:
+        b.store(value, b.bitcast(place, DOUBLES.as_pointer()), align=8)
+    else:
+        b.store(value, place)
 
 
 def store(table: Rows, k: int, value: float) -> None:
@@ -174,30 +163,16 @@ def store(table: Rows, k: int, value: float) -> None:
     table[k] = value
 
 
-@overload(store, strict=False)
-def _overload_store(table: Any, k: Any, value: Any) -> Any:
-    if table is LANE_ROWS and is_number(value):
-        return lambda table, k, value: _store(table, k, splat(float(value)))
-    if table is ROWS and isinstance(value, types.Integer):
-        return lambda table, k, value: _store(table, k, float(value))
-    if table in TABLES:
-        return lambda table, k, value: _store(table, k, value)
-
-    def into_array(table: Any, k: Any, value: Any) -> None:
-        table[k] = value
-
-    return into_array
+def _store_type(table: Any, k: Any, value: Any) -> Any:
+    return types.void(table, types.int64, value) if table in ELEMENTS else None
 
 
-@intrinsic
-def _at(context: Any, table: Any, offset: Any) -> Any:
-    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-        place = _address(c, b, s.args[0], *arguments)
-        if s.args[0] is not ROWS:
-            return place
-        return make_rows(c, b, place, cgutils.create_struct_proxy(ROWS)(c, b, arguments[0]).stride)
-
-    return table(table, types.int64), generate
+@primitive(store, _store_type)
+def _store(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    kind, _, value_type = signature.args
+    value = widened(c, b, arguments[2], value_type, ELEMENTS[kind])
+    store_row(b, kind, row_address(c, b, kind, *arguments[:2]), value)
+    return c.get_dummy_value()
 
 
 def at(table: Rows, offset: int) -> Rows:
@@ -205,31 +180,13 @@ def at(table: Rows, offset: int) -> Rows:
     return table[offset:]
 
 
-@overload(at, strict=False)
-def _overload_at(table: Any, offset: Any) -> Any:
-    return (
-        (lambda table, offset: _at(table, offset)) if table in TABLES else (lambda table, offset: table[offset:])
-    )
-
-
-@intrinsic
-def _lane_gather(context: Any, table: Any, index: Any) -> Any:
-    """Each lane reads a row of its own choice; a NaN index reads row 0."""
-
-    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-        ordered = b.fcmp_ordered("ord", arguments[1], arguments[1])
-        safe = b.select(ordered, arguments[1], ir.Constant(DOUBLES, [0.0] * WIDTH))
-        numbers = b.fptosi(safe, ir.VectorType(INT64, WIDTH))
-        result = ir.Constant(DOUBLES, ir.Undefined)
-        for lane in range(WIDTH):
-            which = ir.Constant(INT32, lane)
-            place = _address(c, b, s.args[0], arguments[0], b.extract_element(numbers, which))
-            if s.args[0] is LANE_ROWS:
-                place = b.gep(place, [which])
-            result = b.insert_element(result, b.load(place), which)
-        return result
-
-    return LANES(table, LANES), generate
+@primitive(at, lambda table, offset: table(table, types.int64) if table in ELEMENTS else None)
+def _at(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    kind = signature.args[0]
+    place = row_address(c, b, kind, *arguments)
+    if kind is not ROWS:
+        return place
+    return make_rows(c, b, place, cgutils.create_struct_proxy(ROWS)(c, b, arguments[0]).stride)
 
 
 def gather(table: Rows, index: float) -> float:
@@ -245,26 +202,30 @@ def gather(table: Rows, index: float) -> float:
     return table[int(index) if index == index else 0]
 
 
-@overload(gather, strict=False)
-def _overload_gather(table: Any, index: Any) -> Any:
-    if index is LANES:
-        return lambda table, index: _lane_gather(table, index)
-    return lambda table, index: load(table, np.int64(index) if index == index else 0)
+def _gather_type(table: Any, index: Any) -> Any:
+    if table not in ELEMENTS:
+        return None
+    result = LANES if index is LANES else ELEMENTS[table]
+    return result(table, LANES if index is LANES else types.float64)
 
 
-@intrinsic
-def _lane_scatter(context: Any, table: Any, index: Any, mask: Any, value: Any) -> Any:
-    def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-        rows, index, mask, value = arguments
-        numbers = b.fptosi(index, ir.VectorType(INT64, WIDTH))
-        for lane in range(WIDTH):
-            which = ir.Constant(INT32, lane)
-            with b.if_then(b.extract_element(mask, which)):
-                place = b.gep(_address(c, b, LANE_ROWS, rows, b.extract_element(numbers, which)), [which])
-                b.store(b.extract_element(value, which), place)
-        return c.get_dummy_value()
-
-    return types.void(LANE_ROWS, LANES, MASK, LANES), generate
+@primitive(gather, _gather_type)
+def _gather(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    """Each lane reads a row of its own choice; a NaN index reads row 0."""
+    (kind, index_type), (table, index) = signature.args, arguments
+    is_lanes = index_type is LANES
+    zero = ir.Constant(DOUBLES, [0.0] * WIDTH) if is_lanes else ir.Constant(DOUBLE, 0.0)
+    safe = b.select(b.fcmp_ordered("ord", index, index), index, zero)
+    numbers = b.fptosi(safe, ir.VectorType(INT64, WIDTH) if is_lanes else INT64)
+    if not is_lanes:
+        return load_row(b, kind, row_address(c, b, kind, table, numbers))
+    result = ir.Constant(DOUBLES, ir.Undefined)
+    for lane in range(WIDTH):
+        which = ir.Constant(INT32, lane)
+        place = row_address(c, b, kind, table, b.extract_element(numbers, which))
+        place = b.gep(place, [which]) if kind is LANE_ROWS else place
+        result = b.insert_element(result, b.load(place), which)
+    return result
 
 
 def scatter(table: Rows, index: float, condition: bool, value: float) -> None:
@@ -280,46 +241,42 @@ def scatter(table: Rows, index: float, condition: bool, value: float) -> None:
         table[int(index)] = value
 
 
-@overload(scatter, strict=False)
-def _overload_scatter(table: Any, index: Any, condition: Any, value: Any) -> Any:
-    if table is LANE_ROWS:
-        return lambda table, index, condition, value: _lane_scatter(
-            table, as_real(table, index), as_mask(table, condition), as_real(table, value)
-        )
-
-    def scalar(table: Any, index: Any, condition: Any, value: Any) -> None:
-        if condition:
-            store(table, np.int64(index), value)
-
-    return scalar
+def _scatter_type(table: Any, index: Any, condition: Any, value: Any) -> Any:
+    if table not in ELEMENTS:
+        return None
+    truth = MASK if condition is MASK else types.boolean
+    return types.void(table, index if index is LANES else types.float64, truth, value)
 
 
-def as_real(table: Rows, value: Any) -> Any:
-    """A number as wide as the rows of a table: itself, or the same in all lanes."""
-    return value
+@primitive(scatter, _scatter_type)
+def _scatter(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    (kind, index_type, truth_type, value_type), (table, index, condition, value) = signature.args, arguments
+    if kind is not LANE_ROWS:
+        with b.if_then(condition):
+            place = row_address(c, b, kind, table, b.fptosi(index, INT64))
+            b.store(widened(c, b, value, value_type, types.float64), place)
+        return c.get_dummy_value()
+    numbers = b.fptosi(widened(c, b, index, index_type, LANES), ir.VectorType(INT64, WIDTH))
+    mask = widened(c, b, condition, truth_type, MASK)
+    values = widened(c, b, value, value_type, LANES)
+    for lane in range(WIDTH):
+        which = ir.Constant(INT32, lane)
+        with b.if_then(b.extract_element(mask, which)):
+            row = row_address(c, b, kind, table, b.extract_element(numbers, which))
+            b.store(b.extract_element(values, which), b.gep(row, [which]))
+    return c.get_dummy_value()
 
 
-@overload(as_real, strict=False)
-def _as_real(table: Any, value: Any) -> Any:
-    if value in TABLES:
-        return lambda table, value: value
-    if table is LANE_ROWS:
-        return (lambda table, value: value) if value is LANES else (lambda table, value: splat(float(value)))
-    return lambda table, value: float(value)
-
-
-def as_mask(table: Rows, condition: bool) -> Any:
-    """A truth value as wide as the rows of a table."""
-    return condition
-
-
-@overload(as_mask, strict=False)
-def _as_mask(table: Any, condition: Any) -> Any:
-    if table is LANE_ROWS and condition is not MASK:
-        return lambda table, condition: splat(1.0 if condition else 0.0) > 0.5
-    return lambda table, condition: condition
-
-
-@typeof_impl.register(RowsType)
-def _typeof_rows(value: Any, context: Any) -> Any:
-    return value
+def as_law_sees(c: Any, b: Any, value: Any, kind: Any, wanted: Any) -> Any:
+    """LLVM code that brings a number, a table or a record to the type that a law's signature asks for."""
+    if kind == wanted:
+        return value
+    if kind is FLAT_ROWS:
+        return make_rows(c, b, value, ir.Constant(INT64, 1))
+    if isinstance(wanted, types.BaseTuple):
+        parts = [
+            as_law_sees(c, b, b.extract_value(value, k), kind.types[k], part)
+            for k, part in enumerate(wanted.types)
+        ]
+        return c.make_tuple(b, wanted, parts)
+    return widened(c, b, value, kind, wanted)

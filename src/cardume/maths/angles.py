@@ -24,10 +24,9 @@ def wrap_angle(angle: float) -> float:
     Returns:
         The wrapped angle [rad], > -PI and <= PI, good to 5e-16.
     """
-    q = round_even(angle * ONE_OVER_TWO_PI)
-    turned = (angle - q * TWO_PI_HIGH) - q * TWO_PI_LOW
-    r = where((angle >= -PI) & (angle <= PI), angle, turned)
-    r = where(r > PI, r - TWO_PI, r)
+    q = round_even(angle * ONE_OVER_TWO_PI)  # 0 for +-PI: the product is +-0.5, and 0 is the even neighbor
+    r = (angle - q * TWO_PI_HIGH) - q * TWO_PI_LOW
+    r = where(r > PI, r - TWO_PI, r)  # past an end by a rounding
     r = where(r <= -PI, r + TWO_PI, r)
     return where(abs(angle) <= ANGLE_LIMIT, r, NAN)
 

@@ -16,8 +16,9 @@ next one, `trigonometry.py`, the circular one.  Errors, measured against referen
 | log | 3e-16 relative | x > 0, denormal numbers too | log(0) = -inf, log(x < 0) = NaN, log(inf) = inf |
 | hypot | 3e-16 relative | 0 and magnitudes 1e-140 to 1e150 | inf above 1e154 |
 
-NaN in gives NaN out.  The sign of zero: sin, tan, asin, atan and tanh return +0 at -0, and atan2 takes either zero for
-+0, so atan2(0, 0) = 0 and atan2(-0, -1) = +pi.  The odd functions are odd and the even ones even to the last bit.
+In all of these NaN in gives NaN out.  The sign of zero: sin, tan, asin, atan and tanh return +0 at -0, and atan2 takes
+either zero for +0, so atan2(0, 0) = 0 and atan2(-0, -1) = +pi.  The odd functions are odd and the even ones even to
+the last bit.
 
 The polynomials are minimax approximations computed for this library: `tests/maths/minimax.py`.  They are summed in
 pairs (Estrin), which waits less than Horner's rule.

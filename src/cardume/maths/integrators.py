@@ -1,20 +1,10 @@
-"""Steps in time: the exact step of a first-order lag, and the weights of Runge-Kutta, Gauss and Simpson."""
-
-import math
+"""Steps in time: the exact step of a first-order lag, and the weights of Runge-Kutta and Simpson."""
 
 from cardume.compiler import compiled, where
 from cardume.maths.elementary import exp
+from cardume.maths.frames import to_ned
 
-__all__ = ["approach", "gauss_slopes", "remaining", "runge_kutta_mean", "simpson_mean"]
-
-
-def _dense_weights(t: float) -> tuple[float, float, float]:
-    """What k1, k2 + k3 and k4 weigh in x(t dt) - x(0), for the third-order interpolation of Runge-Kutta's method."""
-    return t - 1.5 * t**2 + 2.0 / 3.0 * t**3, t**2 - 2.0 / 3.0 * t**3, -0.5 * t**2 + 2.0 / 3.0 * t**3
-
-
-FIRST = _dense_weights(0.5 - math.sqrt(3.0) / 6.0)  # at the two points of Gauss's rule
-SECOND = _dense_weights(0.5 + math.sqrt(3.0) / 6.0)
+__all__ = ["approach", "remaining", "runge_kutta_mean", "simpson_mean", "way_made"]
 
 
 @compiled
@@ -67,31 +57,31 @@ def runge_kutta_mean(start: float, middle_1: float, middle_2: float, end: float)
 
 
 @compiled
-def gauss_slopes(start: float, middle_1: float, middle_2: float, end: float) -> tuple[float, float]:
-    """From a Runge-Kutta step, how far x has come at the two points t = 1/2 -+ sqrt(3)/6 of Gauss's rule.
+def way_made(
+    heading: float, turn: float, surge: float, sway: float, surge_gain: float, sway_gain: float
+) -> tuple[float, float]:
+    """Mean over a step of R(psi) (u, v), for a body that turns and changes its speed: fourth order with one sine.
 
-    x(t dt) - x(0) = dt [(t - 3 t^2 / 2 + 2 t^3 / 3) k1 + (t^2 - 2 t^3 / 3) (k2 + k3) + (2 t^3 / 3 - t^2 / 2) k4]
+    R(mean psi) [(1 - turn^2 / 24) (mean u, mean v) + turn / 12 (-gain_v, gain_u)]
 
-    Of third order within the step. Hence a quantity that is only integrated, f(x(t)), needs two values
-    for a step of fourth order: dt (f(x_1) + f(x_2)) / 2.
+    With delta the heading less its mean, R(delta) = 1 + J delta - delta^2 / 2 + ..., J (u, v) = (-v, u);
+    over a step dt the mean of delta is 0, of delta^2 turn^2 / 12, of delta times V gain turn / 12, and what is
+    left out is of order dt^4.
 
     Args:
-        start: [any] k1.
-        middle_1: [any] k2.
-        middle_2: [any] k3.
-        end: [any] k4.
+        heading: [rad] mean of psi over the step.
+        turn: [rad] change of psi.
+        surge: [m/s] mean of u.
+        sway: [m/s] mean of v.
+        surge_gain: [m/s] change of u.
+        sway_gain: [m/s] change of v.
 
     Returns:
-        (x_1 - x(0)) / dt and (x_2 - x(0)) / dt.
-
-    Source: Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, section II.6, continuous
-    extension of the classical method.
+        (north, east) [m/s].
     """
-    middle = middle_1 + middle_2
-    return (
-        FIRST[0] * start + FIRST[1] * middle + FIRST[2] * end,
-        SECOND[0] * start + SECOND[1] * middle + SECOND[2] * end,
-    )
+    shorter = 1.0 - (turn * turn) * (1.0 / 24.0)
+    twelfth = turn * (1.0 / 12.0)
+    return to_ned(heading, shorter * surge - twelfth * sway_gain, shorter * sway + twelfth * surge_gain)
 
 
 @compiled

@@ -60,7 +60,7 @@ def utm_to_geographic(point: GridPoint) -> GeoPoint:
             f"UTM zone {point.zone}{point.band} does not exist; zones are 1 to 60, followed by a latitude band"
             f" of {BANDS}"
         )
-    if not (100e3 <= point.easting < 1000e3 and 0.0 <= point.northing <= 10000e3):
+    if not (100e3 <= point.easting < 1000e3 and -60e3 <= point.northing <= 10060e3):
         raise InputError(
             f"UTM coordinates are easting {point.easting:.10g} m, northing {point.northing:.10g} m; easting, which"
             " comes first, lies between 100000 and 1000000 m, northing between 0 and 10000000 m"

@@ -84,7 +84,7 @@ def _section(fields: list[Field], catalog: Catalog, optional: Collection[str] = 
                     properties[inner.key].append(described)
         else:
             properties[field.key] = [{**_describe(field.kind, catalog), "description": field.doc}]
-            if _is_required(field) and field.key not in optional:
+            if is_required(field) and field.key not in optional:
                 required.append(field.key)
     section: dict[str, Any] = {
         "type": "object",
@@ -95,9 +95,11 @@ def _section(fields: list[Field], catalog: Catalog, optional: Collection[str] = 
     return {**section, "required": required} if required else section
 
 
-def _is_required(field: Field) -> bool:
-    stands_for_itself = isinstance(field.kind, (Group, Laws))
-    return field.default is MISSING and field.written is None and not stands_for_itself
+def is_required(field: Field) -> bool:
+    """Whether a section must hold this key."""
+    if isinstance(field.kind, Laws) or field.default is not MISSING or field.written is not None:
+        return False
+    return not isinstance(field.kind, Group) or any(is_required(inner) for inner in fields_of(field.kind.record))
 
 
 @singledispatch

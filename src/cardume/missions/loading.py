@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 from pathlib import Path
 from typing import Any, cast
 
@@ -78,17 +78,20 @@ def _fleet(tree: Node) -> tuple[str, ...]:
 def _read_tree(tree: Node, context: Context) -> Mission:
     entries, collector = dict(tree.value), Collector()
     fleet_wide = {key: entries.pop(key) for key in SHARED if key in entries}
+    good: dict[str, Node] = {}
     for key, node in fleet_wide.items():
         with collector:
             read(SHARED[key].kind, node, context)
+            good[key] = node
     vehicles = entries.get("vehicles")
     if vehicles is not None and isinstance(vehicles.value, list):
         with collector:
             _refuse_equal_names(vehicles.value, context.fleet)
         with collector:
-            entries["vehicles"] = Node(
-                [_inherit(item, fleet_wide, context) for item in vehicles.value], vehicles.position
-            )
+            # What is wrong for the fleet is told once, not again for each vehicle.
+            whole = [_without(item, fleet_wide.keys() - good.keys()) for item in vehicles.value]
+            whole = [_inherit(item, good, context) for item in whole]
+            entries["vehicles"] = Node(whole, vehicles.position)
     mission: Any = None
     with collector:
         mission = read_record(Mission, entries, tree, context, also=SHARED)
@@ -104,6 +107,12 @@ def _inherit(vehicle: Node, fleet_wide: dict[str, Node], context: Context) -> No
     for key, node in fleet_wide.items():
         entries[key] = merge(SHARED[key].kind, node, entries[key], context) if key in entries else node
     return Node(entries, vehicle.position)
+
+
+def _without(vehicle: Node, keys: Set[str]) -> Node:
+    if not isinstance(vehicle.value, dict):
+        return vehicle
+    return Node({key: node for key, node in vehicle.value.items() if key not in keys}, vehicle.position)
 
 
 def _refuse_equal_names(vehicles: list[Node], names: tuple[str, ...]) -> None:

@@ -61,7 +61,7 @@ def choose_law(kind: Laws, entries: dict[str, Node], section: Node, context: Con
         return Chosen(kind, name, builtin.get(name))
     valid = [*builtin, *(word for word in kind.words if word not in builtin)]
     message = unknown(f"there is no {kind.family} law {named.given()}", str(name), valid)
-    raise named.error(f"{message}, or your own as module:function")
+    raise named.error(f"{message}, or your own law as module:function")
 
 
 def law_fields(law: Law) -> tuple[Field, ...]:

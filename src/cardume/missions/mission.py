@@ -72,9 +72,10 @@ class Requirement:
 
 
 def _default_plant_step(values: Mapping[str, Any], _context: Context) -> Any:
-    """The longest step up to 0.05 s of which the tick is a whole multiple."""
-    tick = values.get("tick")
-    return tick / math.ceil(tick / 0.05 - 1e-9) if isinstance(tick, float) else 0.05
+    """The longest step up to 0.05 s of which the tick, or the shortest of several, is a whole multiple."""
+    tick = values.get("tick", 0.1)
+    shortest = min(getattr(tick, "options", (tick,)))
+    return shortest / math.ceil(shortest / 0.05 - 1e-9)
 
 
 def _default_log_period(values: Mapping[str, Any], _context: Context) -> Any:
@@ -158,13 +159,15 @@ class Mission:
 def find_position(positions: Mapping[str, Position], key: str) -> Position:
     """The position of a key, or of the nearest section around it; see `Mission.where`."""
     words = key.split(".")
-    own = words[:2] if words[0] == "vehicles" else []
-    for end in range(len(words), 0, -1):
-        for candidate in (words[:end], words[len(own) : end]):
-            if candidate and ".".join(candidate) in positions and end > len(own) - 1:
-                found = positions[".".join(candidate)]
-                return found._replace(key=key) if found.line else found
-    return positions.get("", Position("the mission", 0, key))._replace(key=key)
+    prefix = words[:2] if words[0] == "vehicles" else []
+    rest = words[len(prefix) :]
+    for end in range(len(rest), 0, -1):
+        for of in (prefix, []) if prefix else ([],):
+            found = positions.get(".".join(of + rest[:end]))
+            if found is not None:
+                return found._replace(key=".".join(of + rest))
+    found = positions.get(".".join(prefix)) or positions.get("") or Position("the mission", 0, key)
+    return found._replace(key=key)
 
 
 def _hears(topology: str, size: int, listener: int, speaker: int) -> bool:

@@ -6,6 +6,7 @@ with all its parameters; what does not belong to that law (`reference_point`, `t
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 
 from cardume.errors import MissionError, Position, Problem
@@ -14,7 +15,7 @@ from cardume.missions.lookup import choose_law, inlined_laws
 from cardume.missions.mission import Mission
 from cardume.missions.reading import as_entries
 from cardume.missions.schema import Forms, Group, Kind, Laws, ListOf, Variant, fields_of, records_of
-from cardume.missions.source import Node, item_name, parse_yaml
+from cardume.missions.source import Node, item_name, label, parse_yaml
 from cardume.missions.varying import is_varying
 from cardume.missions.vehicle import SHARED
 from cardume.missions.wording import unknown
@@ -31,9 +32,8 @@ def apply_overrides(tree: Node, overrides: Iterable[str], context: Context) -> N
     Raises:
         MissionError: an override that cannot be read, or that names a vehicle or item that is not there.
     """
-    for text in overrides:  # the law of a section before its parameters
-        tree = merge(Group(Mission), tree, parse_override(text), context)
-    return tree
+    together = functools.reduce(_combine, map(parse_override, overrides), Node(Partial(), tree.position))
+    return merge(Group(Mission), tree, together, context)
 
 
 def parse_override(text: str) -> Node:
@@ -48,10 +48,14 @@ def parse_override(text: str) -> Node:
     if not equals or not all(words) or not value.strip():
         example = "write key.path=value, as --set vehicles.port.depth='5 m'"
         raise MissionError([Problem(Position(source, 0, ""), f"given {show_text(text)}; {example}")])
-    node = _without_lines(parse_yaml(value, source))
+    position = Position(source, 0, key.strip())
+    try:
+        node = _without_lines(parse_yaml(value, source))
+    except MissionError as error:
+        raise MissionError(problem._replace(position=position) for problem in error.problems) from None
     for word in reversed(words):
         node = Node(Partial({word: node}), node.position)
-    return node
+    return label(node)
 
 
 def merge(kind: Kind | None, base: Node, over: Node, context: Context) -> Node:
@@ -77,6 +81,16 @@ def merge(kind: Kind | None, base: Node, over: Node, context: Context) -> Node:
     for key, node in changes.items():
         entries[key] = merge(_kind_at(kind, key), entries[key], node, context) if key in entries else node
     return Node(entries, base.position if isinstance(over.value, Partial) else over.position)
+
+
+def _combine(one: Node, other: Node) -> Node:
+    """Two overrides as one, so that their order does not matter; of the same key the last counts."""
+    if not isinstance(one.value, Partial) or not isinstance(other.value, Partial):
+        return other
+    entries = Partial(one.value)
+    for key, node in other.value.items():
+        entries[key] = _combine(entries[key], node) if key in entries else node
+    return Node(entries, one.position)
 
 
 def _merge_items(kind: ListOf, base: Node, over: Node, context: Context) -> Node:
@@ -118,7 +132,9 @@ def _kind_at(kind: Kind, key: str) -> Kind | None:
     fields = [field for record in records_of(kind) for field in fields_of(record)]
     if isinstance(kind, Group) and kind.record is Mission:
         fields += SHARED.values()
-    return next((field.kind for field in fields if field.key == key), None)
+    kinds = {field.key: field.kind for field in reversed(fields)}
+    found = kinds.get(key)
+    return None if isinstance(found, Laws) and found.inlined else found
 
 
 def _value(entries: dict[str, Node], key: str) -> object:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from cardume.errors import MissionError, Problem
 from cardume.missions.distributions import values_of
-from cardume.missions.mission import Mission
-from cardume.missions.route import FilePath, SegmentsPath
+from cardume.missions.mission import Formation, Mission
+from cardume.missions.route import AnyPath, FilePath, SegmentsPath
 from cardume.missions.vehicle import LawChoice
-from cardume.units import format_quantity
+from cardume.units import show_quantity
 
 MOST_ROWS = 5_000_000
 
@@ -29,10 +29,10 @@ def _step_rules(mission: Mission) -> Iterator[tuple[str, str]]:
     tick, step = mission.tick, mission.plant_step
     if _are_plain(tick, step) and not _is_whole(tick / step):
         count = max(1, int(tick / step))
-        valid = f"{format_quantity(tick / (count + 1), 's')} and {format_quantity(tick / count, 's')}"
+        valid = f"{_seconds(tick / (count + 1))} and {_seconds(tick / count)}"
         yield (
             "plant_step",
-            f"given {format_quantity(step, 's')}; the tick, {format_quantity(tick, 's')}, must be a whole"
+            f"given {_seconds(step)}; the tick, {_seconds(tick)}, must be a whole"
             f" multiple of it: the nearest are {valid}",
         )
 
@@ -47,21 +47,22 @@ def _period_rules(mission: Mission) -> Iterator[tuple[str, str]]:
     for key, period in periods:
         if _are_plain(tick, period) and not _is_whole(period / tick):
             count = int(period / tick)
-            valid = " and ".join(str(format_quantity(tick * n, "s")) for n in (count, count + 1) if n > 0)
+            valid = " and ".join(_seconds(tick * n) for n in (count, count + 1) if n > 0)
             yield (
                 key,
-                f"given {format_quantity(period, 's')}; must be a whole multiple of the tick,"
-                f" {format_quantity(tick, 's')}: the nearest are {valid}",
+                f"given {_seconds(period)}; must be a whole multiple of the tick,"
+                f" {_seconds(tick)}: the nearest are {valid}",
             )
 
 
 def _path_rules(mission: Mission) -> Iterator[tuple[str, str]]:
-    path = mission.path
-    says_speed = isinstance(path, FilePath) or (
-        isinstance(path, SegmentsPath) and all(segment.speed is not None for segment in path.segments)
-    )
-    if mission.formation.speed is None and not says_speed:
-        yield "formation.speed", "missing; v_L, along the reference path; must be a speed, as '0.5 m/s'"
+    path, formation = mission.path, mission.formation
+    if not isinstance(path, AnyPath) or not isinstance(formation, Formation) or formation.speed is not None:
+        return
+    pieces = path.segments if isinstance(path, SegmentsPath) else ()
+    if isinstance(path, FilePath) or (pieces and all(getattr(piece, "speed", 0.0) is not None for piece in pieces)):
+        return
+    yield "formation.speed", "missing; v_L, along the reference path; must be a speed, as '0.5 m/s'"
 
 
 def _fleet_rules(mission: Mission) -> Iterator[tuple[str, str]]:
@@ -88,6 +89,10 @@ def _fleet_rules(mission: Mission) -> Iterator[tuple[str, str]]:
                 "log_period",
                 f"the log would have {rows:.3g} rows, at most {MOST_ROWS:,}; a period above {least:.3g} s fits",
             )
+
+
+def _seconds(value: float) -> str:
+    return show_quantity(value, "s", digits=12)
 
 
 def _are_plain(*values: object) -> bool:

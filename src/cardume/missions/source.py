@@ -31,7 +31,7 @@ from ruamel.yaml.events import (
 from cardume.errors import MissionError, Position, Problem
 from cardume.units import printable, show_text
 
-MAX_BYTES = 1_000_000
+MAX_BYTES = 500_000  # some ten seconds of reading; a mission has a few thousand
 MAX_DEPTH = 24
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 NOT_FINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
@@ -59,7 +59,9 @@ class Node:
             return "a mapping"
         if isinstance(self.value, list):
             return "a list"
-        return show_text({None: "nothing", True: "true", False: "false"}.get(self.value, self.value))
+        if self.value is None or isinstance(self.value, bool):
+            return {None: "nothing", True: "true", False: "false"}[self.value]
+        return show_text(self.value)
 
 
 def read_text(path: Path) -> str:
@@ -104,9 +106,9 @@ def nearest_file(path: Path) -> str:
     except (OSError, ValueError):
         return ""
     if names is None:
-        return f"; its folder {show_text(str(path.parent))} does not exist"
+        return f"; its folder {show_text(str(path.parent), 500)} does not exist"
     close = difflib.get_close_matches(path.name, names, n=1)
-    return f". Did you mean {show_text(str(path.parent / close[0]))}?" if close else ""
+    return f". Did you mean {show_text(str(path.parent / close[0]), 500)}?" if close else ""
 
 
 def parse_yaml(text: str, source: str) -> Node:

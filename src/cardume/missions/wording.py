@@ -113,7 +113,7 @@ def keys_of(record: type) -> list[str]:
 def unknown(what: str, given: str, valid: list[str]) -> str:
     """An unknown name: which is nearest, and which there are."""
     listed = ", ".join(valid[:40]) + (", ..." if len(valid) > 40 else "")
-    return f"{what}{nearest(given, valid)} Valid here: {listed or 'nothing'}"
+    return f"{what}{nearest(given, valid) or '.'} Valid here: {listed or 'nothing'}"
 
 
 def _limits(bounds: Bounds, unit: str) -> str:
@@ -123,7 +123,7 @@ def _limits(bounds: Bounds, unit: str) -> str:
     if bounds.high < HUGE and math.isfinite(bounds.high):
         ends.append(f"{'below' if bounds.high_open else 'at most'} {format_quantity(bounds.high, unit)}")
     if not ends:
-        return f" between {format_quantity(-HUGE, unit)} and {format_quantity(HUGE, unit)}"
+        return f", at most {HUGE:g} {unit}".rstrip() + " in size"
     return f", {' and '.join(ends)}"
 
 

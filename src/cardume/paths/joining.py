@@ -66,17 +66,38 @@ def join(sections: Sequence[Section], rounding: float = ROUNDING) -> ReferencePa
                 f" at most {2.0 * rounding:g} m is taken for rounding: let it start there, or add a line between",
                 after.label,
             )
-    corners = [_corner(before, after, rounding) for before, after in zip(rough, rough[1:], strict=False)]
-    fitted = _adjust(rough, corners, sections)
+    joints = list(zip(rough, rough[1:], strict=False))
+    corners = [_corner(before, after, rounding) for before, after in joints]
+    fitted, problem = _fit(rough, corners, sections, rounding)
+    if problem:  # many short lines, each within rounding of the next, may still draw a curve
+        corners = [_corner(*joint, 0.0 if _are_lines(*joint) else rounding) for joint in joints]
+        fitted, problem = _fit(rough, corners, sections, rounding)
+    if problem:
+        raise problem
+    return tuple(fitted)
+
+
+def _fit(
+    rough: list[Segment], corners: list[float], sections: Sequence[Section], rounding: float
+) -> tuple[list[Segment], GeometryError | None]:
+    """The adjusted chain, and what keeps it from passing near enough to the points of the file."""
+    try:
+        fitted = _adjust(rough, corners, sections)
+    except np.linalg.LinAlgError:
+        return [], GeometryError("the lines and arcs cannot be joined: check that each starts where the last one ends")
     for segment, section in zip(fitted, sections, strict=True):
         shift = max(_distance(a, b) for a, b in zip(_marks(segment), _given(section), strict=True))
-        if shift > 2.0 * rounding:
-            raise GeometryError(
+        if not shift <= 2.0 * rounding:
+            return fitted, GeometryError(
                 f"{section.label} does not meet its neighbors smoothly: it had to be moved by {shift:.3g} m,"
                 f" and at most {2.0 * rounding:g} m is taken for rounding: check its points",
                 section.label,
             )
-    return tuple(fitted)
+    return fitted, None
+
+
+def _are_lines(before: Segment, after: Segment) -> bool:
+    return before.curvature == 0.0 and after.curvature == 0.0
 
 
 def _adjust(rough: list[Segment], corners: list[float], sections: Sequence[Section]) -> list[Segment]:
@@ -148,7 +169,7 @@ def _given(section: Section) -> list[Point]:
 
 
 def _marks(segment: Segment) -> list[Point]:
-    """The points of a segment that a file gives: start, end, centre."""
+    """The points of a segment that a file gives: start, end, center."""
     end = end_of(segment)
     marks = [(segment.north, segment.east), (end.north, end.east)]
     if segment.curvature:
@@ -178,9 +199,9 @@ class _Traverse:
         self.held = 0
 
     def hold(self, place: PathPoint, is_corner: bool) -> None:
-        """Go on where and, unless at a corner, as the part before ended."""
+        """Go on where the part before ended and, unless at a corner, in its direction."""
         turn = math.remainder(place.course - self.freedoms[2], 2.0 * math.pi)
-        self.held = 2 if is_corner else 3
+        self.held = 3
         self.freedoms[:3] = place.north, place.east, self.freedoms[2] + (0.0 if is_corner else turn)
 
     def adjust(self) -> list[Segment]:

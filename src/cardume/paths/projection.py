@@ -38,7 +38,7 @@ from cardume.paths.table import (
 from cardume.signals import PathError, Place
 
 MOVES = 4  # segments that a vehicle may pass in one tick; a jump over more takes several ticks
-AT_CENTER = 1e-9  # radii from an arc's centre within which every point of the arc is equally near
+AT_CENTER = 1e-9  # radii from an arc's center within which every point of the arc is equally near
 
 
 class Foot(NamedTuple):
@@ -137,9 +137,9 @@ def project(place: Place, memory: PathPlace) -> tuple[PathError, PathPlace]:
     """Compare a vehicle with its path at the point it is abeam of.
 
     Exact on lines and arcs of both senses at any distance; before the start and past the end the first
-    and last segments go on, arcs as their circle.  At an arc's centre the angle stays as it was.  Within
+    and last segments go on, arcs as their circle.  At an arc's center the angle stays as it was.  Within
     the corner of a sharp turn gamma waits at the corner.  gamma jumps only where the nearest point
-    does: beyond an arc's centre, and on the inner side of a corner.
+    does: beyond an arc's center, and on the inner side of a corner.
 
     Args:
         place: position and path.

@@ -91,7 +91,11 @@ def end_of(segment: Segment) -> PathPoint:
 
 
 def sense(turn: Turn) -> float:
-    """sigma: 1 for a turn to starboard (clockwise seen from above), -1 to port."""
+    """sigma: 1 for a turn to starboard (clockwise seen from above), -1 to port.
+
+    Raises:
+        GeometryError: it is neither.
+    """
     if turn not in ("starboard", "port"):
         raise GeometryError(f"turn is {turn!r}; it is starboard or port")
     return 1.0 if turn == "starboard" else -1.0

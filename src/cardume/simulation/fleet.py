@@ -24,6 +24,7 @@ class Timing(NamedTuple):
     next_sample: float = np.inf  # [ticks] when the next reading is delivered
     period: float = 1.0  # [ticks]
     latency: float = 0.0  # [ticks]
+    is_noisy: float = 1.0  # [-] 0: its law asks for no noise
 
 
 class OnPath(NamedTuple):

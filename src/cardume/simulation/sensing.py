@@ -87,7 +87,7 @@ def schedule_next(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, due: 
     """After a reading, set when the next one is delivered."""
     following = where(due, timing.next_sample + timing.period, timing.next_sample)
     put_timing(
-        fleet.timings, vehicle * NUM_SENSORS + sensor, Timing(following, timing.period, timing.latency)
+        fleet.timings, vehicle * NUM_SENSORS + sensor, Timing(following, timing.period, timing.latency, timing.is_noisy)
     )
 
 
@@ -100,7 +100,10 @@ def key_of(fleet: Fleet, vehicle: int, stream: int) -> Key:
 @compiled
 def noise_of(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, now: int) -> Noise:
     """The noise of a reading, named after the tick it is valid in."""
-    return normals(key_of(fleet, vehicle, sensor), now - timing.latency)
+    noise = Noise(0.0 * timing.latency, 0.0 * timing.latency, 0.0 * timing.latency, 0.0 * timing.latency)
+    if some(timing.is_noisy > 0.5):
+        noise = normals(key_of(fleet, vehicle, sensor), now - timing.latency)
+    return noise
 
 
 @compiled

@@ -11,6 +11,7 @@ from cardume.laws import COLUMNS, FAMILIES
 from cardume.maths.random import random_key
 from cardume.onboard.mind import OTHERS, OWN, Acquaintance, Speech, Whereabouts, inbox_width
 from cardume.paths.table import PathPlace
+from cardume.signals import Noise
 from cardume.simulation.air import NEVER
 from cardume.simulation.fleet import (
     KEY,
@@ -153,7 +154,7 @@ def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
         if sensor in vehicle.laws:
             choice = vehicle.laws[sensor]
             latency = float(round(choice.value("latency") / tick))
-            timing = Timing(latency, float(max(1, round(choice.value("period") / tick))), latency)
+            timing = Timing(latency, float(max(1, round(choice.value("period") / tick))), latency, float(choice.law.asks_for(Noise)))
         row.append(_row(TIMING, timing))
     return np.concatenate(row)
 

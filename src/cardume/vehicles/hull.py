@@ -3,36 +3,33 @@
 from typing import NamedTuple
 
 from cardume.compiler import compiled
-from cardume.maths import sqrt, to_ned
-from cardume.maths.integrators import gauss_slopes, runge_kutta_mean
+from cardume.maths import sqrt
+from cardume.maths.integrators import runge_kutta_mean, way_made
 from cardume.signals import Water
 
 
 class Hull(NamedTuple):
-    """Inertia with added mass, and drag; `per_` is one over it."""
+    """Drags and couplings, each divided by the mass or inertia that it moves, for speed in the innermost loop."""
 
-    surge_mass: float  # [kg] m - X_udot
-    sway_mass: float  # [kg] m - Y_vdot
-    per_surge_mass: float  # [1/kg]
-    per_sway_mass: float  # [1/kg]
-    per_heave_mass: float  # [1/kg]
-    per_yaw_inertia: float  # [1/(kg m^2)]
-    surge_drag: float  # [N s/m]
-    sway_drag: float  # [N s/m]
-    heave_drag: float  # [N s/m]
-    yaw_drag: float  # [N m s]
-    surge_drag_quadratic: float  # [N s^2/m^2]
-    sway_drag_quadratic: float  # [N s^2/m^2]
-    heave_drag_quadratic: float  # [N s^2/m^2]
-    yaw_drag_quadratic: float  # [N m s^2]
+    surge_drag: float  # [1/s] d_u / m_u
+    sway_drag: float  # [1/s]
+    heave_drag: float  # [1/s]
+    yaw_drag: float  # [1/s]
+    surge_drag_quadratic: float  # [1/m] D_u / m_u
+    sway_drag_quadratic: float  # [1/m]
+    heave_drag_quadratic: float  # [1/m]
+    yaw_drag_quadratic: float  # [-]
+    surge_coupling: float  # [-] m_v / m_u
+    sway_coupling: float  # [-] m_u / m_v
+    yaw_coupling: float  # [1/m^2] (m_u - m_v) / I, the Munk moment
 
 
 class Push(NamedTuple):
-    """What the thrusters do to the hull."""
+    """What the thrusters do to the hull, divided by the mass or inertia that they move."""
 
-    thrust: float  # [N] forward
-    yaw_moment: float  # [N m] bow to starboard
-    heave_force: float  # [N] down
+    surge: float  # [m/s^2] X / m_u
+    heave: float  # [m/s^2] Z / m_w, down
+    yaw: float  # [rad/s^2] N / I, bow to starboard
 
 
 class Velocity(NamedTuple):
@@ -59,11 +56,11 @@ def drag(velocity: float, linear: float, quadratic: float) -> float:
 
     Args:
         velocity: [m/s] or [rad/s].
-        linear: [N s/m] or [N m s] d >= 0.
-        quadratic: [N s^2/m^2] or [N m s^2] D >= 0.
+        linear: [N s/m] or [N m s] d >= 0; per mass [1/s].
+        quadratic: [N s^2/m^2] or [N m s^2] D >= 0; per mass [1/m] or [-].
 
     Returns:
-        The force [N] or moment [N m], of the sign of the velocity.
+        The force [N], moment [N m] or deceleration, of the sign of the velocity.
     """
     return (linear + quadratic * abs(velocity)) * velocity
 
@@ -82,9 +79,9 @@ def acceleration(hull: Hull, velocity: Velocity, push: Push) -> Velocity:
     the hull with it. Roll and pitch stay zero.
 
     Args:
-        hull: masses and drags.
+        hull: drags and couplings per mass.
         velocity: through the water.
-        push: force and moment of the thrusters.
+        push: of the thrusters, per mass.
 
     Returns:
         The rate of change of the velocity.
@@ -92,16 +89,23 @@ def acceleration(hull: Hull, velocity: Velocity, push: Push) -> Velocity:
     Source: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, maneuvering model in
     relative velocity, with diagonal mass and damping.
     """
-    u, v, r = velocity.surge, velocity.sway, velocity.yaw_rate
-    surge_force = push.thrust - drag(u, hull.surge_drag, hull.surge_drag_quadratic)
-    sway_force = -drag(v, hull.sway_drag, hull.sway_drag_quadratic)
-    heave_force = push.heave_force - drag(velocity.heave, hull.heave_drag, hull.heave_drag_quadratic)
-    moment = push.yaw_moment - drag(r, hull.yaw_drag, hull.yaw_drag_quadratic)
+    u, v, w, r = velocity
     return Velocity(
-        (surge_force + hull.sway_mass * v * r) * hull.per_surge_mass,
-        (sway_force - hull.surge_mass * u * r) * hull.per_sway_mass,
-        heave_force * hull.per_heave_mass,
-        (moment + (hull.surge_mass - hull.sway_mass) * u * v) * hull.per_yaw_inertia,
+        (push.surge + hull.surge_coupling * (v * r)) - drag(u, hull.surge_drag, hull.surge_drag_quadratic),
+        -(hull.sway_coupling * (u * r)) - drag(v, hull.sway_drag, hull.sway_drag_quadratic),
+        push.heave - drag(w, hull.heave_drag, hull.heave_drag_quadratic),
+        (push.yaw + hull.yaw_coupling * (u * v)) - drag(r, hull.yaw_drag, hull.yaw_drag_quadratic),
+    )
+
+
+@compiled
+def mean_rate(k1: Velocity, k2: Velocity, k3: Velocity, k4: Velocity) -> Velocity:
+    """Mean over a step from the four slopes of the Runge-Kutta method."""
+    return Velocity(
+        runge_kutta_mean(k1.surge, k2.surge, k3.surge, k4.surge),
+        runge_kutta_mean(k1.sway, k2.sway, k3.sway, k4.sway),
+        runge_kutta_mean(k1.heave, k2.heave, k3.heave, k4.heave),
+        runge_kutta_mean(k1.yaw_rate, k2.yaw_rate, k3.yaw_rate, k4.yaw_rate),
     )
 
 
@@ -120,15 +124,12 @@ def changed(velocity: Velocity, rate: Velocity, dt: float) -> Velocity:
 def hull_step(
     hull: Hull, pose: Pose, velocity: Velocity, water: Water, start: Push, middle: Push, end: Push, dt: float
 ) -> tuple[Pose, Velocity]:
-    """One step of fourth order: Runge-Kutta for the velocity, Gauss's rule for the way it makes.
+    """One step of fourth order: Runge-Kutta for velocity, heading and depth, `way_made` for the position.
 
     p' = R(psi) (u, v) + Vc,   z' = w,   psi' = r
 
-    The velocity does not depend on the pose, so the pose is only integrated: two sines and cosines do
-    what four would do in a Runge-Kutta step of everything.
-
     Args:
-        hull: masses and drags.
+        hull: drags and couplings per mass.
         pose: before the step.
         velocity: through the water, before the step.
         water: current [m/s], NED, towards, held over the step.
@@ -148,24 +149,19 @@ def hull_step(
     a3 = acceleration(hull, v3, middle)
     v4 = changed(velocity, a3, dt)
     a4 = acceleration(hull, v4, end)
-    turn_1, turn_2 = gauss_slopes(v1.yaw_rate, v2.yaw_rate, v3.yaw_rate, v4.yaw_rate)
-    surge_1, surge_2 = gauss_slopes(a1.surge, a2.surge, a3.surge, a4.surge)
-    sway_1, sway_2 = gauss_slopes(a1.sway, a2.sway, a3.sway, a4.sway)
-    north_1, east_1 = to_ned(pose.heading + dt * turn_1, velocity.surge + dt * surge_1, velocity.sway + dt * sway_1)
-    north_2, east_2 = to_ned(pose.heading + dt * turn_2, velocity.surge + dt * surge_2, velocity.sway + dt * sway_2)
+    after = changed(velocity, mean_rate(a1, a2, a3, a4), dt)
+    mean = mean_rate(v1, v2, v3, v4)
+    mean_heading = pose.heading + dt * (v1.yaw_rate + v2.yaw_rate + v3.yaw_rate) * (1.0 / 6.0)
+    north, east = way_made(
+        mean_heading, dt * mean.yaw_rate, mean.surge, mean.sway, after.surge - v1.surge, after.sway - v1.sway
+    )
     moved = Pose(
-        pose.north + dt * (0.5 * (north_1 + north_2) + water.north),
-        pose.east + dt * (0.5 * (east_1 + east_2) + water.east),
-        pose.depth + dt * runge_kutta_mean(v1.heave, v2.heave, v3.heave, v4.heave),
-        pose.heading + dt * runge_kutta_mean(v1.yaw_rate, v2.yaw_rate, v3.yaw_rate, v4.yaw_rate),
+        pose.north + dt * (north + water.north),
+        pose.east + dt * (east + water.east),
+        pose.depth + dt * mean.heave,
+        pose.heading + dt * mean.yaw_rate,
     )
-    mean = Velocity(
-        runge_kutta_mean(a1.surge, a2.surge, a3.surge, a4.surge),
-        runge_kutta_mean(a1.sway, a2.sway, a3.sway, a4.sway),
-        runge_kutta_mean(a1.heave, a2.heave, a3.heave, a4.heave),
-        runge_kutta_mean(a1.yaw_rate, a2.yaw_rate, a3.yaw_rate, a4.yaw_rate),
-    )
-    return moved, changed(velocity, mean, dt)
+    return moved, after
 
 
 @compiled

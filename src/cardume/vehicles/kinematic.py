@@ -29,9 +29,7 @@ def approached(value: float, target: float, time_constant: float, dt: float) -> 
 
 
 @compiled
-def mean_velocity(
-    headings: tuple[float, float, float], speeds: tuple[float, float, float]
-) -> tuple[float, float]:
+def mean_velocity(headings: tuple[float, float, float], speeds: tuple[float, float, float]) -> tuple[float, float]:
     """Mean of R(psi) (u, 0) over a step, by Simpson's rule: exact for a held heading, else of fourth order.
 
     Args:

@@ -1,4 +1,4 @@
-"""MEDUSA: a torpedo pair with two horizontal and two vertical thrusters, as farol simulates it."""
+"""MEDUSA: two horizontal and two vertical thrusters on a hull in four degrees of freedom, as farol simulates it."""
 
 from typing import Annotated, NamedTuple
 
@@ -14,6 +14,7 @@ from cardume.laws import (
     Seconds,
     Unit,
 )
+from cardume.maths import signed_root, signed_square
 from cardume.signals import Command, VesselState, Water
 from cardume.vehicles import medusa_data as farol
 from cardume.vehicles.base import vehicle_model
@@ -62,17 +63,22 @@ def forces_of(shafts: ShaftSpeeds, coefficient: float) -> Forces:
 
 
 @compiled
-def push_of(forces: Forces, arm: float) -> Push:
-    """X = F_port + F_starboard,   N = l (F_port - F_starboard),   Z.
+def push_of(forces: Forces, masses: tuple[float, float, float]) -> Push:
+    """(F_port + F_starboard) / m_u,   F_down / m_w,   l (F_port - F_starboard) / I.
 
     Args:
         forces: of the thrusters.
-        arm: [m] l, of each horizontal thruster.
+        masses: [1/kg], [1/kg], [1/(kg m)] 1 / m_u, 1 / m_w and l / I, l the arm of each horizontal thruster.
 
     Returns:
-        Force and moment on the hull.
+        The push on the hull.
     """
-    return Push(forces.port + forces.starboard, arm * (forces.port - forces.starboard), forces.down)
+    per_surge, per_heave, per_yaw = masses
+    return Push(
+        (forces.port + forces.starboard) * per_surge,
+        forces.down * per_heave,
+        (forces.port - forces.starboard) * per_yaw,
+    )
 
 
 @compiled
@@ -158,43 +164,43 @@ def medusa(
         thruster_arm: [m] of each horizontal thruster from the centre line.
 
     Returns:
-        The state after the step, and the thrusters.
+        The state after the step, and the thrusters. shaft_speed is the speed [rad/s] at which both
+        horizontal thrusters alike would push as much, so that (37) reads the thrust rightly also while
+        they differ to turn: n |n| = (n_port |n_port| + n_starboard |n_starboard|) / 2.
 
     Source: dsor-isr/farol, `auv_sim` and the sim.yaml of its MEDUSA vehicles; the numbers in `medusa_data`.
     """
+    surge_mass, sway_mass = mass + surge_added_mass, mass + sway_added_mass
+    per_surge, per_sway = 1.0 / surge_mass, 1.0 / sway_mass
+    per_heave, per_yaw = 1.0 / (mass + heave_added_mass), 1.0 / (yaw_inertia + yaw_added_inertia)
     hull = Hull(
-        mass + surge_added_mass,
-        mass + sway_added_mass,
-        1.0 / (mass + surge_added_mass),
-        1.0 / (mass + sway_added_mass),
-        1.0 / (mass + heave_added_mass),
-        1.0 / (yaw_inertia + yaw_added_inertia),
-        surge_drag,
-        sway_drag,
-        heave_drag,
-        yaw_drag,
-        surge_drag_quadratic,
-        sway_drag_quadratic,
-        heave_drag_quadratic,
-        yaw_drag_quadratic,
+        surge_drag * per_surge,
+        sway_drag * per_sway,
+        heave_drag * per_heave,
+        yaw_drag * per_yaw,
+        surge_drag_quadratic * per_surge,
+        sway_drag_quadratic * per_sway,
+        heave_drag_quadratic * per_heave,
+        yaw_drag_quadratic * per_yaw,
+        sway_mass * per_surge,
+        surge_mass * per_sway,
+        (surge_mass - sway_mass) * per_yaw,
     )
     holding = 0.5 * drag(vessel.surge, surge_drag, surge_drag_quadratic)
     before = started_thrusters(memory, holding, thrust_coefficient, dt, motor_pole, motor_delay)
     slowest = dead_zone * max_shaft_speed
     commanded = allocate(command, thruster_arm, thrust_coefficient, max_shaft_speed, slowest)
     middle, after = turned_shafts(before, commanded)
-    start_forces = forces_of(ShaftSpeeds(before.port, before.starboard, before.vertical), thrust_coefficient)
-    middle_forces = forces_of(middle, thrust_coefficient)
     forces = forces_of(ShaftSpeeds(after.port, after.starboard, after.vertical), thrust_coefficient)
-    push = push_of(forces, thruster_arm)
+    masses = per_surge, per_heave, thruster_arm * per_yaw
     pose, velocity = hull_step(
         hull,
         Pose(vessel.north, vessel.east, vessel.depth, vessel.heading),
         Velocity(vessel.surge, vessel.sway, vessel.heave, vessel.yaw_rate),
         water,
-        push_of(start_forces, thruster_arm),
-        push_of(middle_forces, thruster_arm),
-        push,
+        push_of(forces_of(ShaftSpeeds(before.port, before.starboard, before.vertical), thrust_coefficient), masses),
+        push_of(forces_of(middle, thrust_coefficient), masses),
+        push_of(forces, masses),
         dt,
     )
     flies = pose.depth < 0.0
@@ -207,9 +213,9 @@ def medusa(
         velocity.sway,
         where(flies & (velocity.heave < 0.0), 0.0, velocity.heave),
         velocity.yaw_rate,
-        0.5 * (after.port + after.starboard),
-        push.thrust,
-        push.yaw_moment,
+        signed_root(0.5 * (signed_square(after.port) + signed_square(after.starboard))),
+        forces.port + forces.starboard,
+        thruster_arm * (forces.port - forces.starboard),
         useful_power(forces, velocity, thruster_arm),
     )
     return vessel, after

@@ -25,7 +25,7 @@ class ShaftSpeeds(NamedTuple):
 class Thrusters(NamedTuple):
     """Memory: how fast the shafts turn, the commands still on their way, and what a plant step does to both."""
 
-    started: float = 0.0
+    started: float = 0.0  # [-] 1 after the first step
     port: float = 0.0  # [rad/s]
     starboard: float = 0.0  # [rad/s]
     vertical: float = 0.0  # [rad/s]
@@ -80,9 +80,7 @@ def shaft_speed_for(force: float, per_coefficient: float, dead_zone: float) -> f
 
 
 @compiled
-def allocate(
-    command: Command, arm: float, coefficient: float, max_shaft_speed: float, dead_zone: float
-) -> ShaftSpeeds:
+def allocate(command: Command, arm: float, coefficient: float, max_shaft_speed: float, dead_zone: float) -> ShaftSpeeds:
     """Share the wanted forces among the thrusters; what is too much is taken from thrust before yaw.
 
     F_port = X / 2 + N / (2 l),   F_starboard = X / 2 - N / (2 l),   each vertical one Z / 2

@@ -20,7 +20,7 @@ class CurrentField:
     source: str  # the file
     title: str  # what the file calls itself
     names: tuple[str, str]  # its variables for the velocity to the east and to the north
-    first_time: datetime | None  # UTC, of times[0]; None where the file has no time or a calendar of its own
+    start: datetime | None  # of the mission, UTC; None where the file has no time or a calendar of its own
     times: np.ndarray  # (num_times,) [s] since the start of the mission
     depths: np.ndarray  # (num_depths,) [m] below the surface
     latitudes_deg: np.ndarray  # (num_latitudes,) north positive
@@ -31,8 +31,9 @@ class CurrentField:
         """The table that the law `gridded` reads.
 
         Latitude and longitude become north and east by the two radii of curvature at the origin.  Against the mission's
-        own axes (azimuthal equidistant) that misplaces the field by tan(latitude) / R times a product of two distances:
-        2.7 m at 5 km north-east of 36.8 N, 9 m at 10 km; grid cells are a thousand meters and more.
+        own axes (azimuthal equidistant) this misplaces the field by E^2 tan(latitude) / (2 R) to the south and
+        N E tan(latitude) / R to the east: at 36.8 N and 5 km north and 5 km east of the origin by 3.3 m, at 10 km and
+        10 km by 13 m, where a cell of the grid has a thousand meters and more.
 
         Args:
             origin: of the mission's local axes.

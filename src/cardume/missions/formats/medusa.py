@@ -28,6 +28,7 @@ from cardume.missions.geodesy import GeoPoint, GridPoint, utm_to_geographic
 from cardume.units import nearest, show_text
 
 ALL = -1
+BYTE_ORDER_MARK = "\ufeff"
 FIELDS = {
     "LINE": ("xInit", "yInit", "xEnd", "yEnd", "speed"),
     "ARC": ("xInit", "yInit", "xCenter", "yCenter", "xEnd", "yEnd", "speed", "direction", "radius"),
@@ -39,6 +40,7 @@ KEYWORDS = (*FIELDS, "FORMATION", "BIAS")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 WHOLE = re.compile(r"[-+]?[0-9]+")
 ZONE = re.compile(r"([0-9]{1,2})([A-Za-z])")
+FARTHEST = 1e6  # [m]
 RADIUS_ROUNDING = 0.1  # [m] what the radius written may differ from the one drawn
 
 
@@ -117,8 +119,8 @@ class _Reader:
 
     def read(self, text: str) -> MedusaMission:
         """The whole file."""
-        lines = [(number, line.partition("#")[0].split()) for number, line in enumerate(text.splitlines(), 1)]
-        lines = [(number, words) for number, words in lines if words]
+        numbered = enumerate(text.lstrip(BYTE_ORDER_MARK).splitlines(), 1)
+        lines = [(number, words) for number, line in numbered if (words := line.partition("#")[0].split())]
         if len(lines) < 2:
             raise refused(
                 self.source, 0, "", "holds no mission; it begins with the version, 3, and then the reference point"
@@ -184,7 +186,7 @@ class _Reader:
             triples = [words[k : k + 3] for k in range(0, len(words), 3)]
             self.is_biased = self.keyword == "BIAS"
             self.formation = tuple(
-                Member(id=self._vehicle(i), ahead=self._number("x", x), starboard=0.0 - self._number("y", y))
+                Member(id=self._vehicle(i), ahead=self._near("x", x), starboard=0.0 - self._near("y", y))
                 for i, x, y in triples
             )
             ids = [member.id for member in self.formation]
@@ -196,7 +198,7 @@ class _Reader:
         if len(words) < len(names):
             self._wrong(f"has {len(words)} of its {len(names)} values: {' '.join(names)}")
             return
-        values = {name: self._number(name, word) for name, word in zip(names, words, strict=False)}
+        values = {name: self._near(name, word) for name, word in zip(names, words, strict=False)}
         more = words[len(names) :]
         vehicle = self._vehicle(more[0]) if more else ALL
         gamma = self._number("gamma", more[1]) if len(more) > 1 else None
@@ -230,6 +232,14 @@ class _Reader:
         point = "; the decimal sign is a point" if re.fullmatch(r"[-+]?[0-9]+,[0-9]+", word) else ""
         self._wrong(f"{name} is {show_text(word)}; it must be a finite number, such as -24.57{point}")
         return math.nan
+
+    def _near(self, name: str, word: str) -> float:
+        """A number of a mission's own size; NaN where there is none, which was then noted."""
+        number = self._number(name, word)
+        if abs(number) > FARTHEST:
+            self._wrong(f"{name} is {number:g}; no number of a mission is beyond {FARTHEST:g}")
+            return math.nan
+        return number
 
     def _vehicle(self, word: str) -> int:
         if WHOLE.fullmatch(word) and len(word) < 10 and int(word) >= ALL:

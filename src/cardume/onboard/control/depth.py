@@ -8,6 +8,7 @@ from cardume.signals import Feedback
 from cardume.vehicles.hull import drag
 
 NEAR, AWAY = 0.05, 1.0  # [m] the integral works on errors between these; less is inside the thrusters' dead zone
+INTEGRAL_SHARE = 0.5  # [-] of the largest force that the integral may take: enough for a badly trimmed vehicle
 
 
 class DepthGains(NamedTuple):
@@ -35,9 +36,7 @@ class DepthState(NamedTuple):
 
 
 @compiled
-def keep_depth(
-    feedback: Feedback, state: DepthState, gains: DepthGains, dt: float
-) -> tuple[float, DepthState]:
+def keep_depth(feedback: Feedback, state: DepthState, gains: DepthGains, dt: float) -> tuple[float, DepthState]:
     """Heave force for the wanted depth.
 
     w_d = sat(k (z_ref - z)),   Z = kw (w_d - w) + (d + D |w_d|) w_d + s,   s' = ks (z_ref - z)
@@ -65,7 +64,7 @@ def keep_depth(
     force = where(knows, clip(wanted, -gains.force_max, gains.force_max), 0.0)
     works = knows & (abs(error) > NEAR) & (abs(error) < AWAY)
     integral = state.integral + where(works, dt * gains.integral_gain * error, 0.0)
-    limit = 0.5 * gains.force_max
+    limit = INTEGRAL_SHARE * gains.force_max
 
     miss = where(knows, feedback.depth - state.depth, 0.0)
     b = gains.bandwidth

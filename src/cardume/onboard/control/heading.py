@@ -7,10 +7,11 @@ from cardume.maths import clip, wrap_angle
 from cardume.signals import Feedback
 from cardume.vehicles.hull import drag, sway_step
 
-# Where the gains change with speed, found with the margins in `feedforward_pid`.
-SOFTENING_SPEED = 0.9  # [m/s] heading gain is halved here
-STIFFENING_SPEED = 1.4  # [m/s] yaw-rate gain is doubled here
+# How the gains change with speed: see `feedforward_pid`.
+SOFTENING = 1.0 / 0.9**2  # [s^2/m^2] the heading gain is halved at 0.9 m/s
+STIFFENING = 1.0 / 1.4**2  # [s^2/m^2] the yaw-rate gain is doubled at 1.4 m/s
 SMALL_ERROR = 0.15  # [rad] the integral is held beyond
+INTEGRAL_SHARE = 0.2  # [-] of the largest moment that the integral may take
 
 
 class HeadingGains(NamedTuple):
@@ -95,6 +96,7 @@ def steer_heading(
     """Yaw moment for the wanted heading.
 
     N = kp(u) (psi_ref - psi) + kd(u) (z - r) + N_turn(z, u) + share (m_v - m_u) u v + s
+    kp(u) = kp / (1 + (u / 0.9)^2),   kd(u) = kd (1 + (u / 1.4)^2)
 
     z is how fast the reference turns (`track_turn`), v the estimated sway, s the integral.
 
@@ -114,11 +116,11 @@ def steer_heading(
     knows = (feedback.heading == feedback.heading) & (feedback.yaw_rate == feedback.yaw_rate)
     error = where(knows, wrap_angle(feedback.reference_heading - feedback.heading), 0.0)
     yaw_rate = where(knows, feedback.yaw_rate, rate)
-    fast, faster = surge / SOFTENING_SPEED, surge / STIFFENING_SPEED
+    surge_squared = surge * surge
     munk = gains.sway_share * (gains.sway_mass - gains.surge_mass) * surge * state.sway
     wanted = (
-        gains.gain * error / (1.0 + fast * fast)
-        + gains.rate_gain * (1.0 + faster * faster) * (rate - yaw_rate)
+        gains.gain * error / (1.0 + SOFTENING * surge_squared)
+        + gains.rate_gain * (1.0 + STIFFENING * surge_squared) * (rate - yaw_rate)
         + turning_moment(rate, surge, gains)
         + munk
         + state.integral
@@ -135,5 +137,6 @@ def steer_heading(
         gains.sway_drag_quadratic,
         dt,
     )
+    limit = INTEGRAL_SHARE * gains.moment_max
     moment = clip(wanted, -gains.moment_max, gains.moment_max)
-    return moment, HeadingState(heading, rate, sway, clip(integral, -0.2 * gains.moment_max, 0.2 * gains.moment_max))
+    return moment, HeadingState(heading, rate, sway, clip(integral, -limit, limit))

@@ -11,10 +11,10 @@ def none(feedback: Feedback) -> Command:
     tau = 0
 
     Args:
-        feedback: not looked at; times zero, so that the answer is as wide as the signals are.
+        feedback: not looked at.
 
     Returns:
-        Zero thrust [N], moment [N m] and heave force [N].
+        No thrust [N], moment [N m] or heave force [N].
 
     Source: paper eq. (1), whose vehicle has no thrusters.
     """

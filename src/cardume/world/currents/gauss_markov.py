@@ -14,8 +14,8 @@ def gauss_markov(
 
     x' = a x + sigma sqrt(1 - a^2) n,   a = exp(-elapsed / T),   and x = sigma n the first time
 
-    This is the exact solution of dx = -x / T dt + sigma sqrt(2 / T) dW, so the steps need not be equal, and their length
-    changes neither the variance sigma^2 nor the autocorrelation exp(-|lag| / T).
+    This is the exact solution of dx = -x / T dt + sigma sqrt(2 / T) dW, so the steps need not be equal, and their
+    length changes neither the variance sigma^2 nor the autocorrelation exp(-|lag| / T).
 
     Args:
         value: [any] x, what this function returned the time before.

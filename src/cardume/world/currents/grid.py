@@ -27,7 +27,8 @@ class Bracket(NamedTuple):
 
     lower: float  # [-] number of the node at or below it
     upper: float  # [-] number of the next node; the same one on an axis with a single node
-    fraction: float  # [-] of the way from one to the other; below 0 or above 1 outside the axis
+    fraction: float  # [-] of the way from one to the other, 0 to 1
+    inside: bool  # [-] a truth value or mask: not before the first node nor after the last
 
 
 class Sums(NamedTuple):
@@ -53,7 +54,8 @@ def pack_grid(
     Returns:
         (n,) float64, read-only.
     """
-    header, nodes = [], []
+    header: list[float] = []
+    nodes: list[float] = []
     for axis in (times, depths, norths, easts):
         size = len(axis)
         per_unit = (size - 1) / (axis[-1] - axis[0]) if size > 1 else 0.0
@@ -65,7 +67,7 @@ def pack_grid(
 
 
 @compiled
-def bracket(grid: Rows, axis: int, x: float) -> Bracket:
+def _bracket(grid: Rows, axis: int, x: float) -> Bracket:
     """Find a value on an axis; the guess from the mean step is right at once where the axis is regular."""
     row = at(grid, axis * AXIS_WIDTH)
     size, start = load(row, 0), load(row, 1)
@@ -78,7 +80,8 @@ def bracket(grid: Rows, axis: int, x: float) -> Bracket:
         away = _nodes_away(grid, start, k, step, last, x)
     low, high = gather(grid, start + k), gather(grid, start + k + step)
     width = where(high > low, high - low, 1.0)
-    return Bracket(k, k + step, (x - low) / width * step)
+    fraction = (x - low) / width * step
+    return Bracket(k, k + step, clip(fraction, 0.0, 1.0), (fraction >= 0.0) & (fraction <= 1.0))
 
 
 @compiled
@@ -120,10 +123,9 @@ def _add_column(
 ) -> Sums:
     """The nodes around a place at one of the times, at one or two depths."""
     levels = load(at(grid, DEPTH * AXIS_WIDTH), 0)
-    down = clip(depths.fraction, 0.0, 1.0)
-    sums = _add_layer(grid, sums, time * levels + depths.lower, norths, easts, weight * (1.0 - down))
-    if some(down > 0.0):
-        sums = _add_layer(grid, sums, time * levels + depths.upper, norths, easts, weight * down)
+    sums = _add_layer(grid, sums, time * levels + depths.lower, norths, easts, weight * (1.0 - depths.fraction))
+    if some(depths.fraction > 0.0):
+        sums = _add_layer(grid, sums, time * levels + depths.upper, norths, easts, weight * depths.fraction)
     return sums
 
 
@@ -147,15 +149,14 @@ def water_at(grid: Rows, north: float, east: float, depth: float, time: float) -
     Returns:
         Velocity [m/s]; NaN outside the grid in the horizontal and where too few nodes hold water.
     """
-    times, depths = bracket(grid, TIME, time), bracket(grid, DEPTH, depth)
-    norths, easts = bracket(grid, NORTH, north), bracket(grid, EAST, east)
-    later = clip(times.fraction, 0.0, 1.0)
+    times, depths = _bracket(grid, TIME, time), _bracket(grid, DEPTH, depth)
+    norths, easts = _bracket(grid, NORTH, north), _bracket(grid, EAST, east)
+    later = times.fraction
     nothing = 0.0 * later  # as wide as a signal; NaN where the time is
     sums = Sums(nothing, nothing, nothing)
     sums = _add_column(grid, sums, times.lower, depths, norths, easts, 1.0 - later)
     if some(later > 0.0):
         sums = _add_column(grid, sums, times.upper, depths, norths, easts, later)
-    inside = (norths.fraction >= 0.0) & (norths.fraction <= 1.0) & (easts.fraction >= 0.0) & (easts.fraction <= 1.0)
-    known = inside & (sums.weight >= LEAST_WEIGHT)
+    known = norths.inside & easts.inside & (sums.weight >= LEAST_WEIGHT)
     weight = where(known, sums.weight, 1.0)
     return Water(where(known, sums.north / weight, NOTHING), where(known, sums.east / weight, NOTHING))

@@ -49,7 +49,8 @@ def gnss(
     Returns:
         Position [m], exactly the truth when both sigmas are 0, and the next memory.
 
-    Source: no fix below 0.2 m as in LSTS DUNE, Simulators/GPS, "Activation Depth"; the process derived, see gauss_markov.
+    Source: no fix below 0.2 m as in LSTS DUNE, Simulators/GPS, "Activation Depth"; the process is derived in
+    `gauss_markov`.
     """
     north, east = memory.north, memory.east
     if some(correlated_sigma > 0.0):

@@ -1,0 +1,176 @@
+"""What a run leaves behind: a directory with everything in it, or nothing.
+
+    DIR/log.nc          the flight, row by row
+    DIR/summary.json    its numbers and the verdict
+    DIR/mission.yaml    the mission with every default written
+    DIR/figures/        what the caller draws
+"""
+
+import errno
+import os
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cardume.errors import CardumeError, DataError, InputError
+from cardume.missions.atomic import new_directory, renewed_directory
+from cardume.missions.log import write_log
+from cardume.missions.mission import Mission
+from cardume.missions.summary import FILE_NAME, judge, read_summary, summarize, to_json
+from cardume.simulation.flight import Flight
+from cardume.units import printable
+
+RUNS = Path("runs")
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+class ResultsError(CardumeError):
+    """The mission was flown, but its results could not be kept."""
+
+    exit_code = 3
+
+
+class Destination(NamedTuple):
+    """Where results will go."""
+
+    directory: Path
+    is_numbered: bool  # take the next number if somebody else takes this one meanwhile
+    ours: tuple[str, ...] = ()  # entries of an earlier run there, which make place
+
+
+def choose_destination(mission_name: str, given: Path | None = None) -> Destination:
+    """Decide, before anything is flown, where the results will go, and refuse what cannot work.
+
+    Without a directory given it is the next free one of `runs/NAME/001`, `002`, ...; one that is
+    given may be new, empty, or hold an earlier run of cardume and nothing else.
+
+    Args:
+        mission_name: safe as the name of a folder.
+        given: the directory that the user wants.
+
+    Raises:
+        InputError: it holds something else, is no directory, or cannot be written to.
+    """
+    if given is None:
+        parent = RUNS / mission_name
+        destination = Destination(parent / f"{_last_number(parent) + 1:03d}", is_numbered=True)
+    else:
+        destination = Destination(given, is_numbered=False, ours=_earlier_run(given))
+    _refuse_unwritable(destination.directory)
+    return destination
+
+
+def write_results(
+    destination: Destination,
+    mission: Mission,
+    flight: Flight,
+    *,
+    version: str,
+    draw: Callable[[Path], None] | None = None,
+) -> tuple[Path, dict[str, Any]]:
+    """Write everything, complete or not at all.
+
+    Args:
+        destination: from `choose_destination`.
+        mission: as flown.
+        flight: what was flown, however it ended.
+        version: of cardume.
+        draw: fills the folder it is given with figures.
+
+    Returns:
+        The directory, and the summary as written there.
+
+    Raises:
+        ResultsError: the disk is full, or refused otherwise; nothing is left behind.
+    """
+    while True:
+        try:
+            with _opened(destination) as folder:
+                summary = _fill(folder, destination.directory, mission, flight, version, draw)
+            return destination.directory, summary
+        except FileExistsError as problem:
+            if not destination.is_numbered:
+                raise ResultsError(_refusal(destination.directory, problem)) from None
+            destination = choose_destination(mission.name)
+        except OSError as problem:
+            raise ResultsError(_refusal(destination.directory, problem)) from problem
+
+
+def _opened(destination: Destination) -> AbstractContextManager[Path]:
+    if destination.directory.is_dir():
+        return renewed_directory(destination.directory, destination.ours)
+    return new_directory(destination.directory)
+
+
+def _fill(
+    folder: Path,
+    final: Path,
+    mission: Mission,
+    flight: Flight,
+    version: str,
+    draw: Callable[[Path], None] | None,
+) -> dict[str, Any]:
+    resolved = mission.to_yaml(final)
+    (folder / "mission.yaml").write_text(resolved, encoding="utf-8")
+    write_log(folder / "log.nc", flight, mission=resolved, version=version)
+    if draw is not None:
+        (folder / "figures").mkdir()
+        draw(folder / "figures")
+    files = sorted([*_files(folder), FILE_NAME])
+    verdicts = judge(mission.require, flight.metrics)
+    summary = summarize(flight, verdicts, duration=mission.duration, version=version, files=files)
+    (folder / FILE_NAME).write_text(to_json(summary), encoding="utf-8")
+    return summary
+
+
+def _files(folder: Path) -> list[str]:
+    """Every file below a folder, relative to it."""
+    return [path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir()]
+
+
+def _last_number(parent: Path) -> int:
+    try:
+        return max((int(name) for name in os.listdir(parent) if name.isascii() and name.isdigit()), default=0)
+    except OSError:
+        return 0
+
+
+def _earlier_run(directory: Path) -> tuple[str, ...]:
+    """The entries of an earlier run in a directory; none where it is new or empty."""
+    name = printable(str(directory))
+    advice = "give a new directory with -o"
+    if not directory.exists():
+        return ()
+    if not directory.is_dir():
+        raise InputError(f"-o {name}: is a file; {advice}")
+    try:
+        if not os.listdir(directory):
+            return ()
+        listed = {str(file) for file in read_summary(directory).get("files") or ()}
+        found = set(_files(directory))  # only now: this may be somebody's whole disk
+    except OSError as problem:
+        raise InputError(f"-o {name}: cannot be read: {problem.strerror}; {advice}") from None
+    except DataError:
+        raise InputError(f"-o {name}: is not empty, and not a run of cardume; {advice}") from None
+    if others := sorted(found - listed):
+        raise InputError(f"-o {name}: holds {printable(others[0])}, which cardume did not write there; {advice}")
+    return tuple(sorted({Path(file).parts[0] for file in found}))
+
+
+def _refuse_unwritable(directory: Path) -> None:
+    """Say before the flight, not after it, that its results could not be kept."""
+    place = next(path for path in (directory, *directory.absolute().parents) if path.exists())
+    if not place.is_dir():
+        raise InputError(f"{printable(str(place))} is a file, so no results fit below it; choose another place with -o DIR")
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise InputError(f"no permission to write in {printable(str(place))}; choose another place with -o DIR")
+
+
+def _refusal(directory: Path, problem: OSError) -> str:
+    name = printable(str(directory))
+    reason = printable(problem.strerror or str(problem))
+    if problem.errno in FULL:
+        advice = "make room, or choose another disk with -o DIR, and run again"
+        return f"the disk of {name} is full ({reason}); nothing was kept there: {advice}"
+    return f"the results could not be written to {name}: {reason}; nothing was kept there: choose another place with -o DIR"

@@ -1,0 +1,144 @@
+"""`summary.json`: the numbers of a flight, and whether they are what the mission required."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cardume.errors import DataError
+from cardume.missions.mission import Requirement
+from cardume.simulation.flight import METRICS, Flight, Metrics
+from cardume.units import printable
+
+FORMAT_VERSION = 1
+FILE_NAME = "summary.json"
+
+
+class Verdict(NamedTuple):
+    """One requirement: what was wanted, what was got."""
+
+    metric: str
+    unit: str
+    bound: str  # "at most" or "at least"
+    wanted: float  # [unit]
+    got: float  # [unit] NaN where the metric has no value
+    vehicle: str | None  # whose value was required; None: of the fleet
+    worst: str | None  # whose value it is; None where it is the fleet's own
+    met: bool
+
+
+def judge(requirements: Iterable[Requirement], metrics: Metrics) -> tuple[Verdict, ...]:
+    """Hold a flight's numbers against what the mission requires; a metric without a value meets nothing.
+
+    Args:
+        requirements: of the mission, in the units of METRICS.
+        metrics: of the flight.
+    """
+    return tuple(_judge_one(requirement, metrics) for requirement in requirements)
+
+
+def _judge_one(requirement: Requirement, metrics: Metrics) -> Verdict:
+    metric, vehicle, worst = METRICS[requirement.metric], requirement.vehicle, requirement.vehicle
+    if vehicle is None:
+        got, worst = metrics.worst(requirement.metric)
+    else:
+        got = metrics.vehicles[vehicle].get(requirement.metric, math.nan)
+    met = got >= requirement.limit if metric.wanted == "at least" else got <= requirement.limit
+    return Verdict(requirement.metric, metric.unit, metric.wanted, requirement.limit, got, vehicle, worst, bool(met))
+
+
+def is_met(flight: Flight, verdicts: Sequence[Verdict]) -> bool | None:
+    """Whether all is as required; None where nothing is, or where the mission did not come to its end.
+
+    Args:
+        flight: what was flown.
+        verdicts: of its numbers.
+    """
+    if not verdicts or flight.reason != "completed":
+        return None
+    return all(verdict.met for verdict in verdicts)
+
+
+def summarize(
+    flight: Flight, verdicts: Sequence[Verdict], *, duration: float, version: str, files: Sequence[str] = ()
+) -> dict[str, Any]:
+    """The summary as plain values; what is no number becomes None.
+
+    Args:
+        flight: what was flown.
+        verdicts: of its numbers.
+        duration: [s] of the whole mission.
+        version: of cardume.
+        files: written beside the summary.
+    """
+    names = [name for name in METRICS if _has(flight.metrics, name)]
+    fleet = {name: flight.metrics.worst(name)[0] for name in names}
+    return {
+        "cardume_summary": FORMAT_VERSION,
+        "mission": flight.mission_name,
+        "version": version,
+        "seed": int(flight.seed),
+        "reason": flight.reason,
+        "failure": flight.failure,
+        "requirements_met": is_met(flight, verdicts),
+        "duration": _plain(duration),
+        "flown": _plain(flight.flown),
+        "wall_seconds": _plain(flight.wall_seconds),
+        "requirements": [_requirement(verdict) for verdict in verdicts],
+        "fleet": _numbers(fleet),
+        "vehicles": {name: _numbers(flight.metrics.vehicles.get(name, {})) for name in flight.vehicle_names},
+        "units": {name: METRICS[name].unit for name in names},
+        "files": list(files),
+    }
+
+
+def to_json(summary: Mapping[str, Any]) -> str:
+    """Strict JSON: no NaN, no infinity, ASCII only."""
+    return json.dumps(summary, indent=2, allow_nan=False) + "\n"
+
+
+def read_summary(directory: Path) -> dict[str, Any]:
+    """The summary in a run's directory.
+
+    Args:
+        directory: of the run.
+
+    Raises:
+        DataError: missing, damaged, or not written by cardume.
+    """
+    path = directory / FILE_NAME
+    name = printable(str(path))
+    try:
+        found = json.loads(path.read_bytes())
+    except OSError as problem:
+        raise DataError(f"{name} cannot be read: {problem.strerror}; give the directory of a run") from None
+    except (ValueError, RecursionError):
+        raise DataError(f"{name} is damaged: it is not JSON; fly the mission again") from None
+    if not isinstance(found, dict) or "cardume_summary" not in found:
+        raise DataError(f"{name} was not written by cardume; give the directory of a run")
+    if found["cardume_summary"] != FORMAT_VERSION:
+        said = printable(str(found["cardume_summary"]))[:40]
+        raise DataError(f"{name} has format {said}; this cardume reads format {FORMAT_VERSION}")
+    return found
+
+
+def _has(metrics: Metrics, name: str) -> bool:
+    return name in metrics.fleet or any(name in found for found in metrics.vehicles.values())
+
+
+def _numbers(values: Mapping[str, float]) -> dict[str, float | int | None]:
+    """In the order of METRICS, counts as whole numbers."""
+    return {name: _plain(values[name], METRICS[name].unit == "") for name in METRICS if name in values}
+
+
+def _plain(value: float, is_count: bool = False) -> float | int | None:
+    value = float(value)
+    if not math.isfinite(value):
+        return None
+    return int(value) if is_count and value.is_integer() else value
+
+
+def _requirement(verdict: Verdict) -> dict[str, Any]:
+    plain = verdict._asdict()
+    return plain | {"wanted": _plain(verdict.wanted), "got": _plain(verdict.got)}
