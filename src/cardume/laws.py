@@ -20,6 +20,7 @@ from cardume.compiler import Rows, SharedRows, at, load, store
 from cardume.compiler.calls import address, call_python, define_verb, law_answer, law_signature, record_type
 from cardume.compiler.compiled import cached, source_stamp
 from cardume.compiler.reach import fingerprint, is_recursive, with_compiled_helpers
+from cardume.errors import LawError
 
 
 class Unit(NamedTuple):
@@ -77,10 +78,6 @@ class Parameter(NamedTuple):
         above = value > self.low if self.low_open else value >= self.low
         below = value < self.high if self.high_open else value <= self.high
         return above and below
-
-
-class LawError(Exception):
-    """A function that cannot be a law of its family; the text names both and says what is required."""
 
 
 class LawBook(NamedTuple):

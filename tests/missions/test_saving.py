@@ -20,7 +20,7 @@ def settled(read: Mission) -> Mission:
     return with_options(read, {key: sweep.options[0] for key, sweep in sweeps_of(read).items()})
 
 
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(tree=missions())
 def test_a_saved_mission_reads_back_equal(tree: dict[str, Any]) -> None:
     read = parse(json.dumps(tree, ensure_ascii=False), directory=HERE.parent)

@@ -86,7 +86,7 @@ def written(kind: Kind, vary: bool = True) -> st.SearchStrategy[Any]:
             st.fixed_dictionaries({"uniform": two}),
             st.fixed_dictionaries({"linspace": two.map(lambda t: [*t, 3])}),
         ]
-        ways.append(st.fixed_dictionaries({"normal": st.tuples(_number(kind), st.floats(0, 9)).map(list)}))
+        ways.append(st.fixed_dictionaries({"normal": st.tuples(_number(kind), st.floats(0, 6)).map(list)}))
     return st.one_of(forms, forms, forms, *ways)
 
 

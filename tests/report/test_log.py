@@ -164,7 +164,9 @@ def spoil(log: Path, how: str) -> None:
         log.write_bytes(content[: len(content) // 2])
     elif how == "flipped":
         middle = len(content) // 3
-        log.write_bytes(content[:middle] + bytes(b ^ 0x5A for b in content[middle : middle + 8]) + content[middle + 8 :])
+        log.write_bytes(
+            content[:middle] + bytes(b ^ 0x5A for b in content[middle : middle + 8]) + content[middle + 8 :]
+        )
 
 
 @pytest.mark.parametrize(

@@ -41,7 +41,9 @@ def test_loss_is_a_threshold_on_the_first_draw(draw: float, loss: float) -> None
 
 @pytest.mark.parametrize("loss", [0.05, 0.2, 0.5])
 def test_messages_are_lost_as_often_as_said_and_independently(loss: float) -> None:
-    arrived = np.array([bernoulli(Link(10.0, d, 0.5), loss).delivered for d in np.random.default_rng(2).uniform(size=5000)])
+    arrived = np.array(
+        [bernoulli(Link(10.0, d, 0.5), loss).delivered for d in np.random.default_rng(2).uniform(size=5000)]
+    )
     spread = math.sqrt(loss * (1.0 - loss) / 5000.0)
     assert np.mean(arrived) == pytest.approx(1.0 - loss, abs=4.0 * spread)
     both_lost = np.mean((1.0 - arrived[1:]) * (1.0 - arrived[:-1]))

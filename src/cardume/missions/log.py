@@ -105,12 +105,15 @@ def write_log(path: Path, flight: Flight, *, mission: str, version: str) -> None
     from netCDF4 import Dataset
 
     size = OVERHEAD + sum(values.nbytes for values in _arrays(flight))
-    with new_file(path, size) as partial, _failing_as_os_error(path):
-        with contextlib.closing(Dataset(str(partial), "w", format="NETCDF4")) as file:
-            _write_attributes(file, flight, mission, version)
-            _write_channels(file, flight)
-            _write_messages(file.createGroup("messages"), flight)
-            _write_paths(file.createGroup("paths"), flight)
+    with (
+        new_file(path, size) as partial,
+        _failing_as_os_error(path),
+        contextlib.closing(Dataset(str(partial), "w", format="NETCDF4")) as file,
+    ):
+        _write_attributes(file, flight, mission, version)
+        _write_channels(file, flight)
+        _write_messages(file.createGroup("messages"), flight)
+        _write_paths(file.createGroup("paths"), flight)
 
 
 def read_log(path: Path) -> Log:

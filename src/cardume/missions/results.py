@@ -1,9 +1,9 @@
 """What a run leaves behind: a directory with everything in it, or nothing.
 
-    DIR/log.nc          the flight, row by row
-    DIR/summary.json    its numbers and the verdict
-    DIR/mission.yaml    the mission with every default written
-    DIR/figures/        what the caller draws
+DIR/log.nc          the flight, row by row
+DIR/summary.json    its numbers and the verdict
+DIR/mission.yaml    the mission with every default written
+DIR/figures/        what the caller draws
 """
 
 import errno
@@ -162,7 +162,9 @@ def _refuse_unwritable(directory: Path) -> None:
     """Say before the flight, not after it, that its results could not be kept."""
     place = next(path for path in (directory, *directory.absolute().parents) if path.exists())
     if not place.is_dir():
-        raise InputError(f"{printable(str(place))} is a file, so no results fit below it; choose another place with -o DIR")
+        raise InputError(
+            f"{printable(str(place))} is a file, so no results fit below it; choose another place with -o DIR"
+        )
     if not os.access(place, os.W_OK | os.X_OK):
         raise InputError(f"no permission to write in {printable(str(place))}; choose another place with -o DIR")
 
@@ -173,4 +175,5 @@ def _refusal(directory: Path, problem: OSError) -> str:
     if problem.errno in FULL:
         advice = "make room, or choose another disk with -o DIR, and run again"
         return f"the disk of {name} is full ({reason}); nothing was kept there: {advice}"
-    return f"the results could not be written to {name}: {reason}; nothing was kept there: choose another place with -o DIR"
+    advice = "choose another place with -o DIR"
+    return f"the results could not be written to {name}: {reason}; nothing was kept there: {advice}"

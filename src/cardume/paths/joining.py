@@ -1,25 +1,22 @@
 """From lines and arcs written in a file, rounded, to a chain that is exactly continuous.
 
 A file written to the centimeter has gaps and kinks of that size at its joints.  Kept, every offset
-path would get a corner at each of them.  So the chain is adjusted as a surveyor adjusts a traverse:
-continuous in position, and in course wherever the joint is meant to be smooth, with lengths and
-curvatures chosen by least squares so that it passes as near as possible to every point of the file.
+path would get a corner at each of them.  So the chain is made continuous in position, and in course
+wherever the joint is meant to be smooth (`traverse.py`).
 """
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from cardume.paths.segment import GeometryError, PathPoint, ReferencePath, Segment, end_of
+from cardume.paths.segment import GeometryError, ReferencePath, Segment, end_of
 from cardume.paths.table import MAX_SEGMENTS
+from cardume.paths.traverse import Point, adjust_chain
 
 ROUNDING = 0.05  # [m] what a joint may be off and still be meant to be smooth
 SHARPEST_SMOOTH = math.radians(10.0)  # no kink above this is taken for rounding, however short its sides
-WINDOW, LOOKAHEAD = 96, 16  # segments adjusted at once; what lies further ahead no longer matters
-
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -82,7 +79,7 @@ def _fit(
 ) -> tuple[list[Segment], GeometryError | None]:
     """The adjusted chain, and what keeps it from passing near enough to the points of the file."""
     try:
-        fitted = _adjust(rough, corners, sections)
+        fitted = adjust_chain(rough, corners, [_given(section) for section in sections])
     except np.linalg.LinAlgError:
         return [], GeometryError("the lines and arcs cannot be joined: check that each starts where the last one ends")
     for segment, section in zip(fitted, sections, strict=True):
@@ -98,18 +95,6 @@ def _fit(
 
 def _are_lines(before: Segment, after: Segment) -> bool:
     return before.curvature == 0.0 and after.curvature == 0.0
-
-
-def _adjust(rough: list[Segment], corners: list[float], sections: Sequence[Section]) -> list[Segment]:
-    """Window after window, each going on from the last and looking past its own end, so that time grows with length."""
-    fitted: list[Segment] = []
-    for first in range(0, len(rough), WINDOW):
-        part = slice(first, first + WINDOW + LOOKAHEAD)
-        traverse = _Traverse(rough[part], corners[part], sections[part])
-        if fitted:
-            traverse.hold(end_of(fitted[-1]), is_corner=corners[first - 1] != 0.0)
-        fitted += traverse.adjust()[:WINDOW]
-    return fitted
 
 
 def _as_segment(section: Section, rounding: float) -> Segment:
@@ -178,110 +163,3 @@ def _marks(segment: Segment) -> list[Point]:
             (segment.north - radius * math.sin(segment.course), segment.east + radius * math.cos(segment.course))
         )
     return marks
-
-
-class _Traverse:
-    """A chain described by as few numbers as it has freedoms, so that it cannot help being continuous.
-
-    The freedoms: first point and course, the lengths, the curvatures of arcs, the angles of corners.
-    """
-
-    def __init__(self, rough: list[Segment], corners: list[float], sections: Sequence[Section]) -> None:
-        self.rough = rough
-        self.is_arc = np.array([s.curvature != 0.0 for s in rough])
-        corners = corners[: len(rough) - 1]
-        self.is_corner = np.array([False, *(angle != 0.0 for angle in corners)])
-        self.given = np.concatenate([_given(section) for section in sections])
-        curvatures = [s.curvature for s in rough if s.curvature]
-        turns = [angle for angle in corners if angle]
-        first = [rough[0].north, rough[0].east, rough[0].course]
-        self.freedoms = np.array([*first, *(s.length for s in rough), *curvatures, *turns])
-        self.held = 0
-
-    def hold(self, place: PathPoint, is_corner: bool) -> None:
-        """Go on where the part before ended and, unless at a corner, in its direction."""
-        turn = math.remainder(place.course - self.freedoms[2], 2.0 * math.pi)
-        self.held = 3
-        self.freedoms[:3] = place.north, place.east, self.freedoms[2] + (0.0 if is_corner else turn)
-
-    def adjust(self) -> list[Segment]:
-        """Gauss-Newton; from rounded points it takes a few steps."""
-        x = self.freedoms.copy()
-        for _ in range(20):
-            misfit = (self.marks(x) - self.given).ravel()
-            slopes = self.slopes(x)
-            step = np.linalg.solve(slopes.T @ slopes, slopes.T @ misfit)
-            x[self.held :] -= step
-            if np.abs(step).max() < 1e-6:
-                break
-        return self.chain(x)
-
-    def slopes(self, x: np.ndarray) -> np.ndarray:
-        """How the marks move with each freedom that is not held, by central differences.
-
-        Args:
-            x: [any] (freedoms,).
-
-        Returns:
-            [any] (2 marks, freedoms that are not held).
-        """
-        columns = []
-        for k in range(self.held, len(x)):
-            nudge = np.zeros(len(x))
-            nudge[k] = 1e-6
-            columns.append(((self.marks(x + nudge) - self.marks(x - nudge)) / 2e-6).ravel())
-        return np.column_stack(columns)
-
-    def _split(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Lengths, curvatures and the course at the start of each segment."""
-        count = len(self.rough)
-        lengths, curvatures, turns = x[3 : 3 + count], np.zeros(count), np.zeros(count)
-        curvatures[self.is_arc] = x[3 + count : 3 + count + self.is_arc.sum()]
-        turns[self.is_corner] = x[len(x) - self.is_corner.sum() :]
-        turned = np.concatenate([[0.0], np.cumsum(lengths * curvatures)[:-1]])
-        return lengths, curvatures, x[2] + turned + np.cumsum(turns)
-
-    def marks(self, x: np.ndarray) -> np.ndarray:
-        """The points that the file gives, where the chain has them.
-
-        Args:
-            x: [any] (freedoms,).
-
-        Returns:
-            [m] (marks, 2) north, east.
-        """
-        lengths, curvatures, courses = self._split(x)
-        curved = self.is_arc
-        radii = 1.0 / np.where(curved, curvatures, 1.0)
-        ahead = np.where(curved, radii * np.sin(curvatures * lengths), lengths)
-        aside = np.where(curved, 2.0 * radii * np.sin(0.5 * curvatures * lengths) ** 2, 0.0)
-        unit = np.column_stack([np.cos(courses), np.sin(courses)])
-        across = np.column_stack([-unit[:, 1], unit[:, 0]])
-        nodes = x[:2] + np.cumsum(ahead[:, None] * unit + aside[:, None] * across, axis=0)
-        starts = np.vstack([x[:2], nodes[:-1]])
-        marks = np.stack([starts, nodes, starts + radii[:, None] * across], axis=1)
-        wanted = np.column_stack([np.ones_like(curved), np.ones_like(curved), curved])
-        return marks[wanted.astype(bool)]
-
-    def chain(self, x: np.ndarray) -> list[Segment]:
-        """The segments.
-
-        Args:
-            x: [any] (freedoms,).
-        """
-        lengths, curvatures, courses = self._split(x)
-        path: list[Segment] = []
-        north, east = float(x[0]), float(x[1])
-        for rough, length, curvature, course in zip(self.rough, lengths, curvatures, courses, strict=True):
-            path.append(
-                replace(
-                    rough,
-                    north=north,
-                    east=east,
-                    course=float(course),
-                    curvature=float(curvature),
-                    length=float(length),
-                )
-            )
-            north, east, _ = end_of(path[-1])
-        return path

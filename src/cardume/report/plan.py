@@ -35,13 +35,14 @@ def draw_plan(flight: Flight, width: float = WIDTH) -> Any:
         rows = [math.ceil(len(handles) / count) for handles, count in zip(legends, columns, strict=True)]
         top = max(0.6, style.ROW * sum(rows) + 0.25)
         inner_height = min(max(inner * (high[0] - low[0]) / (high[1] - low[1]), 0.45 * inner), 1.25 * inner)
+        low, high = _widened(low, high, inner_height / inner)
         height = inner_height + top + BOTTOM
         figure = style.new_figure(width, height)
         axes = figure.add_axes((LEFT / width, BOTTOM / height, inner / width, inner_height / height))
         _prepare(axes, low, high)
         _draw_paths(axes, flight)
         _draw_tracks(axes, flight)
-        _draw_instants(axes, flight, size=HULL * max((high[1] - low[1]) / inner, (high[0] - low[0]) / inner_height))
+        _draw_instants(axes, flight, size=HULL * (high[1] - low[1]) / inner)
         for handles, count, above in zip(legends, columns, (0, rows[0]), strict=True):
             place = (LEFT / width, 1 - (0.08 + style.ROW * above) / height)
             figure.legend(handles=handles, loc="upper left", bbox_to_anchor=place, ncols=count, **style.TIGHT)
@@ -61,10 +62,17 @@ def _limits(flight: Flight, inner: float) -> tuple[np.ndarray, np.ndarray]:
     return low - margin, high + margin
 
 
+def _widened(low: np.ndarray, high: np.ndarray, shape: float) -> tuple[np.ndarray, np.ndarray]:
+    """The corners moved apart so that height / width is the given shape."""
+    middle, extent = (low + high) / 2, high - low
+    extent = np.maximum(extent, [extent[1] * shape, extent[0] / shape])
+    return middle - extent / 2, middle + extent / 2
+
+
 def _prepare(axes: Any, low: np.ndarray, high: np.ndarray) -> None:
     axes.set_xlim(low[1], high[1])
     axes.set_ylim(low[0], high[0])
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal")
     axes.set_xlabel("east [m]")
     axes.set_ylabel("north [m]")
     axes.locator_params(nbins=6)
@@ -135,7 +143,8 @@ def _hull(north: float, east: float, heading: float, size: float) -> np.ndarray:
     """Corners (north, east) of a hull seen from above, bow towards the heading."""
     shape = size * np.array([[0.6, 0.0], [0.1, 0.26], [-0.5, 0.22], [-0.5, -0.22], [0.1, -0.26]])
     turn = np.array([[math.cos(heading), -math.sin(heading)], [math.sin(heading), math.cos(heading)]])
-    return np.array([north, east]) + shape @ turn.T
+    corners: np.ndarray = np.array([north, east]) + shape @ turn.T
+    return corners
 
 
 def _meanings() -> list[Any]:

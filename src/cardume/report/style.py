@@ -48,7 +48,8 @@ def styled() -> Iterator[None]:
     """Draw and save in this style; whatever else the process draws keeps its own."""
     import matplotlib
 
-    with matplotlib.rc_context({**matplotlib.rcParamsDefault, **RULES}):
+    rules: Any = {key: value for key, value in matplotlib.rcParamsDefault.items() if "backend" not in key} | RULES
+    with matplotlib.rc_context(rules):
         yield
 
 
@@ -74,7 +75,7 @@ def new_figure(width: float, height: float) -> Any:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height), layout="none")
+    figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
 

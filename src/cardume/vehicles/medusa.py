@@ -203,15 +203,15 @@ def medusa(
         push_of(forces, masses),
         dt,
     )
-    flies = pose.depth < 0.0
+    surfaced = pose.depth <= 0.0
     vessel = VesselState(
         pose.north,
         pose.east,
-        where(flies, 0.0, pose.depth),
+        where(surfaced, 0.0, pose.depth),
         pose.heading,
         velocity.surge,
         velocity.sway,
-        where(flies & (velocity.heave < 0.0), 0.0, velocity.heave),
+        where(surfaced & (velocity.heave < 0.0), 0.0, velocity.heave),
         velocity.yaw_rate,
         signed_root(0.5 * (signed_square(after.port) + signed_square(after.starboard))),
         forces.port + forces.starboard,

@@ -52,7 +52,7 @@ def latitude_axis(values: np.ndarray, window: Window) -> Axis:
     """
     if np.abs(values).max() > 90.0 + SAME:
         raise DataError(f"latitudes reach from {values.min():g} to {values.max():g} deg")
-    axis = sort_nodes(values)
+    axis = _at_least_two(sort_nodes(values), "latitude")
     if window.origin is None:
         return _even(axis, "latitude")
     center = float(np.degrees(window.origin.latitude))
@@ -79,7 +79,7 @@ def longitude_axis(values: np.ndarray, window: Window) -> Axis:
     center = middle if window.origin is None else float(np.degrees(window.origin.longitude))
     axis = sort_nodes(center + around(values, center))
     repeated = np.diff(axis.nodes, prepend=-np.inf) < SAME
-    axis = Axis(axis.nodes[~repeated], axis.picks[~repeated])
+    axis = _at_least_two(Axis(axis.nodes[~repeated], axis.picks[~repeated]), "longitude")
     if window.origin is None:
         return _even(axis, "longitude")
     if not axis.nodes[0] <= center <= axis.nodes[-1]:
@@ -193,10 +193,14 @@ def sort_nodes(values: np.ndarray) -> Axis:
     return Axis(values[picks], picks)
 
 
+def _at_least_two(axis: Axis, kind: str) -> Axis:
+    if len(axis.nodes) < 2:
+        raise DataError(f"there is only one {kind}; a field needs at least two")
+    return axis
+
+
 def _even(axis: Axis, kind: str) -> Axis:
     steps = np.diff(axis.nodes)
-    if len(steps) == 0:
-        raise DataError(f"there is only one {kind}; a field needs at least two")
     if steps.min() <= 0.0 or steps.max() > MOST_UNEVEN * steps.min():
         raise DataError(f"steps of {kind} reach from {steps.min():g} to {steps.max():g} deg; {REGRID}")
     return axis

@@ -35,7 +35,7 @@ def thruster_calibration(
         num_thrusters: [-] N.
         linear_drag: [N s/m] d >= 0; may be zero, as quadratic_drag may, but not both.
         quadratic_drag: [N s^2/m^2] D >= 0.
-        scale: [-] a, an error of the calibration; a = sqrt(f) where the thrust is f times what is believed.
+        scale: [-] a, an error of the calibration; a = sqrt(f) where the thrust is believed to be f times what it is.
 
     Returns:
         Surge through the water [m/s].

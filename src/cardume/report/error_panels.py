@@ -12,6 +12,7 @@ from cardume.simulation.flight import Flight
 WIDTH = 7.2  # [inch]
 PANEL, TOP, BOTTOM, LEFT, RIGHT = 1.15, 0.25, 0.45, 0.75, 0.15  # [inch]
 GAP = 0.24  # [inch] between panels
+ROOMY = 5.5  # [inch] width at which two notes fit above a panel
 CLIPPED = 3.0  # a transient this much larger than what follows runs out of its panel
 
 
@@ -47,7 +48,7 @@ def draw_errors(flight: Flight, width: float = WIDTH) -> Any:
             box = (LEFT / width, bottom / height, (width - LEFT - RIGHT) / width, PANEL / height)
             last = figure.add_axes(box, sharex=last)
             _prepare(last, panel, is_lowest=k == len(panels) - 1)
-            last.yaxis.set_label_coords(-0.5 / (width - LEFT - RIGHT), 0.5)
+            last.yaxis.set_label_coords(-0.44 / (width - LEFT - RIGHT), 0.5)
             panel.draw(last, flight, rows)
             _clip_transient(last, flight)
         place = (LEFT / width, 1 - 0.08 / height)
@@ -69,8 +70,10 @@ def _prepare(axes: Any, panel: Panel, is_lowest: bool) -> None:
 
 def _clip_transient(axes: Any, flight: Flight) -> None:
     """Let what follows the transient fill the panel, and say how far the transient went."""
+    if not len(flight.times):
+        return
     settled = _settled(flight)
-    before, after = _range(axes, flight.times[0], settled), _range(axes, settled, np.inf)
+    before, after = _range(axes, -np.inf, settled), _range(axes, settled, np.inf)
     if before is None or after is None:
         return
     half = max(abs(after[0]), abs(after[1]), 1e-9)
@@ -79,9 +82,12 @@ def _clip_transient(axes: Any, flight: Flight) -> None:
     low = -1.35 * half if min(before[0], after[0]) < 0 else 0.0
     axes.set_ylim(low, 1.35 * half)
     furthest = max(before, key=abs)
-    box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
     text = f"before settling up to {furthest:.2g}"
-    axes.text(0.008, 0.965, text, transform=axes.transAxes, va="top", fontsize=7, zorder=8, bbox=box)
+    if axes.get_figure().get_figwidth() >= ROOMY:
+        axes.set_title(text, fontsize=7, loc="right", pad=2.5)
+    else:
+        box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
+        axes.text(0.008, 0.965, text, transform=axes.transAxes, va="top", fontsize=7, zorder=8, bbox=box)
 
 
 def _settled(flight: Flight) -> float:

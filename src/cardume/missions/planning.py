@@ -1,0 +1,248 @@
+"""From a mission, as written, to a plan, as the engine takes it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cardume.errors import DataError
+from cardume.laws import Law, laws_of
+from cardume.missions.catalog import Catalog
+from cardume.missions.currents import Window, explain_coverage, read_current
+from cardume.missions.formats import read_plan
+from cardume.missions.geodesy import GeoPoint
+from cardume.missions.mission import Mission
+from cardume.missions.route import AnyPath, ArcPath, CirclePath, FilePath, LawnmowerPath, LinePath
+from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
+from cardume.onboard.mind import Setup
+from cardume.paths.arc import arc
+from cardume.paths.circle import Center, circle
+from cardume.paths.lawnmower import lawnmower
+from cardume.paths.line import line
+from cardume.paths.offset import offset_path
+from cardume.paths.outline import outline
+from cardume.paths.projection import point_at
+from cardume.paths.segment import GeometryError, ReferencePath, Start
+from cardume.paths.segments import ArcPiece, LinePiece, segments
+from cardume.paths.table import PathPlace, start_at
+from cardume.signals import VesselState
+from cardume.simulation.plan import Choice, Plan, VehiclePlan
+from cardume.simulation.score import Rules
+
+IDEAL_SENSORS = ("gnss", "ahrs", "depth", "dvl", "thruster_speed")
+ERRORS = ("sigma", "bias", "deviation", "misalignment", "latency")  # parts of the names of parameters that are errors
+UNLIMITED = 1e9  # [m]
+TEXTS = ("file", "east", "north", "start_time")  # what `gridded` takes beside numbers
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A plan and what figures need beside it.
+
+    Attributes:
+        plan: for the engine.
+        reference: the reference path's table, without offset.
+    """
+
+    plan: Plan
+    reference: np.ndarray
+
+
+def make_plan(mission: Mission, catalog: Catalog) -> Planned:
+    """Build paths, look up laws and read the current of a mission whose numbers are all drawn.
+
+    Args:
+        mission: with every value fixed.
+        catalog: where its laws are found.
+
+    Raises:
+        InputError: a path that cannot be built, an offset that does not fit, a current that does not cover it.
+    """
+    origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
+    reference, origin = _reference_path(mission, origin)
+    speed = mission.formation.speed if mission.formation.speed is not None else np.nan
+    own = _positioned(mission, "path", lambda: offset_path(reference, 0.0, 0.0, speed))
+    if not np.isfinite(own).all():
+        raise mission.error("formation.speed", "is not given, and not every piece of the path has a speed; give it")
+    paths = [_own_path(mission, vehicle, reference, speed) for vehicle in mission.vehicles]
+    water, field = _current(mission, origin, paths, catalog)
+    vehicles = tuple(_vehicle(mission, v, p, water, catalog) for v, p in zip(mission.vehicles, paths, strict=True))
+    plan = Plan(
+        vehicles,
+        np.asarray(mission.adjacency),
+        mission.duration,
+        mission.seed,
+        mission.tick,
+        mission.plant_step,
+        mission.log_period,
+        field,
+        Rules(mission.transient.threshold, mission.transient.hold, mission.swath or 0.0),
+    )
+    return Planned(plan, own)
+
+
+def _positioned(mission: Mission, key: str, build: Callable[[], Any]) -> Any:
+    """Build something; what is wrong with it is told with the place of its key in the file."""
+    try:
+        return build()
+    except GeometryError as problem:
+        raise mission.error(key, str(problem)) from None
+
+
+def _reference_path(mission: Mission, origin: GeoPoint | None) -> tuple[ReferencePath, GeoPoint | None]:
+    if isinstance(mission.path, FilePath):
+        plan = read_plan(Path(mission.path.file), origin)
+        return plan.segments, plan.origin
+    return _positioned(mission, "path", lambda: _drawn_path(mission.path)), origin
+
+
+def _drawn_path(path: AnyPath) -> ReferencePath:
+    if isinstance(path, CirclePath):
+        return circle(Center(path.centre.north, path.centre.east), path.radius, path.turn, path.start_bearing)
+    start = Start(path.start.north, path.start.east, path.start.course)
+    if isinstance(path, LinePath):
+        return line(start, path.length)
+    if isinstance(path, ArcPath):
+        return arc(start, path.radius, path.turn, path.angle)
+    if isinstance(path, LawnmowerPath):
+        return lawnmower(start, path.leg, path.legs, path.spacing, path.turn)
+    pieces = [
+        LinePiece(line=piece.line, speed=piece.speed)
+        if hasattr(piece, "line")
+        else ArcPiece(arc=piece.arc, turn=piece.turn, angle=piece.angle, speed=piece.speed)
+        for piece in path.segments
+    ]
+    return segments(start, pieces)
+
+
+def _own_path(mission: Mission, vehicle: Vehicle, reference: ReferencePath, speed: float) -> np.ndarray:
+    key = f"vehicles.{vehicle.name}.offset.starboard"
+    offset = vehicle.offset
+    return _positioned(mission, key, lambda: offset_path(reference, offset.starboard, offset.ahead, speed))
+
+
+def _current(
+    mission: Mission, origin: GeoPoint | None, paths: list[np.ndarray], catalog: Catalog
+) -> tuple[Choice, np.ndarray]:
+    """The law of the water and, for a gridded one, its table."""
+    chosen = mission.current
+    if chosen.name == "none":
+        return Choice(laws_of("current")["uniform"], {"speed": 0.0}), np.zeros(1)
+    if chosen.name != "gridded":
+        return _choice(chosen, catalog), np.zeros(1)
+    if origin is None:
+        raise mission.error("origin", "a gridded current needs to know where the mission is; give latitude and longitude")
+    texts = {key: chosen.parameters.get(key) for key in TEXTS}
+    numbers = {key: value for key, value in chosen.parameters.items() if key not in texts}
+    window = Window(origin=origin, start_time=texts["start_time"], duration=mission.duration)
+    try:
+        field = read_current(texts["file"], window=window, east=texts["east"], north=texts["north"])
+    except DataError as problem:
+        raise mission.error("current.file", str(problem)) from None
+    points = np.concatenate([outline(path, 20.0)[:, 1:] for path in paths])
+    if problem := explain_coverage(field, origin, points):
+        raise mission.error("current.file", problem)
+    return Choice(laws_of("current")["gridded"], numbers), field.to_rows(origin)
+
+
+def _choice(chosen: LawChoice, catalog: Catalog) -> Choice:
+    """A law and its numbers, found again by name."""
+    if ":" in chosen.name:
+        law: Any = catalog.resolve_law(chosen.family, chosen.name)
+    else:
+        law = laws_of(chosen.family)[chosen.name]
+    return Choice(law, {name: float(value) for name, value in chosen.parameters.items()})
+
+
+def _vehicle(mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice, catalog: Catalog) -> VehiclePlan:
+    laws = {
+        "guidance": _choice(vehicle.guidance.law, catalog),
+        "reference_point": _choice(vehicle.guidance.reference_point, catalog),
+        "compensation": _choice(vehicle.compensation, catalog),
+        "current_observer": _choice(vehicle.current_observer, catalog),
+        "position": _choice(vehicle.position, catalog),
+        "neighbors": _choice(vehicle.neighbors, catalog),
+        "coordination": _choice(vehicle.coordination.law, catalog),
+        "messaging": _choice(vehicle.messaging, catalog),
+        "model": _choice(vehicle.model, catalog),
+        "autopilot": _autopilot(vehicle, catalog),
+        "acoustics": _choice(vehicle.acoustics, catalog),
+        "current": water,
+        **_sensors(vehicle, mission.tick, catalog),
+    }
+    state, place = _start(vehicle, path)
+    believed = vehicle.initial_estimate
+    return VehiclePlan(
+        vehicle.name,
+        laws,
+        path,
+        state,
+        (believed.north, believed.east) if believed else None,
+        place,
+        Setup(
+            vehicle.depth,
+            float(vehicle.speed_reference == "ground"),
+            float(vehicle.end != "continue"),
+            float(vehicle.end == "surface"),
+            float("usbl" in laws),
+        ),
+    )
+
+
+def _autopilot(vehicle: Vehicle, catalog: Catalog) -> Choice:
+    """A kinematic vehicle follows its reference by itself."""
+    if vehicle.model.name == "kinematic":
+        return Choice(laws_of("autopilot")["none"])
+    return _choice(vehicle.autopilot, catalog)
+
+
+def _sensors(vehicle: Vehicle, tick: float, catalog: Catalog) -> dict[str, Choice]:
+    """The sensors a vehicle carries, and the law by which it reads its shaft speed."""
+    sensors = vehicle.sensors
+    laws: dict[str, Choice] = {}
+    if sensors.ideal:
+        laws = {kind: _exact(next(iter(laws_of(kind).values())), tick) for kind in IDEAL_SENSORS}
+    else:
+        for kind in ("gnss", "ahrs", "depth", "usbl", "dvl"):
+            if (chosen := getattr(sensors, kind)) is not None:
+                laws[kind] = _choice(chosen, catalog)
+        if sensors.thruster_speed is not None:
+            laws["thruster_speed"] = _choice(sensors.thruster_speed.law, catalog)
+    laws["speed"] = _reader(vehicle, sensors, catalog)
+    return laws
+
+
+def _reader(vehicle: Vehicle, sensors: Sensors, catalog: Catalog) -> Choice:
+    """How shaft speed becomes speed: the shaft speed of a kinematic vehicle is its speed already."""
+    if sensors.thruster_speed is not None:
+        chosen = _choice(sensors.thruster_speed.reader, catalog)
+    else:
+        chosen = Choice(laws_of("speed")["thruster_calibration"])
+    if vehicle.model.name == "kinematic" and chosen.law.is_builtin:
+        return Choice(laws_of("speed")["proportional"], {"scale": chosen.value("scale")})
+    return chosen
+
+
+def _exact(law: Law, tick: float) -> Choice:
+    """A sensor without any error, everywhere, in every tick."""
+    exact = {p.name: 0.0 for p in law.parameters if any(part in p.name for part in ERRORS)}
+    exact |= {p.name: UNLIMITED for p in law.parameters if p.name == "deepest"}
+    return Choice(law, exact | {"period": tick})
+
+
+def _start(vehicle: Vehicle, path: np.ndarray) -> tuple[VesselState, PathPlace]:
+    """Where a vehicle starts, and where on its path that is."""
+    start = vehicle.start
+    if isinstance(start, RelativeStart):
+        place = start_at(path, start.along_track)
+        point = point_at(path, start.along_track)
+        north = point.north - start.cross_track * point.sin_course
+        east = point.east + start.cross_track * point.cos_course
+        heading = point.course + start.heading_error
+    else:
+        north, east, heading, place = start.north, start.east, start.heading, PathPlace()
+    speed = start.speed
+    shaft_speed = speed if vehicle.model.name == "kinematic" else 0.0
+    return VesselState(north, east, vehicle.depth, heading, speed, shaft_speed=shaft_speed), place

@@ -1,0 +1,148 @@
+"""What the numbers of a flight mean, in plain words."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from cardume.missions.mission import Mission
+from cardume.missions.summary import Verdict, is_met
+from cardume.report.table import number, share_heard
+from cardume.simulation.flight import Flight
+
+NOTICEABLE = 0.05  # [m] of cross-track error below which its cause is not worth a sentence
+
+
+def meaning(flight: Flight, mission: Mission, verdicts: Sequence[Verdict]) -> str:
+    """A few sentences: how it ended, whether the paths were kept, why not better, and the verdict.
+
+    Args:
+        flight: what was flown.
+        mission: as flown.
+        verdicts: of its numbers.
+    """
+    parts = (_ending(flight, mission), *_keeping(flight, mission), *_together(flight), *_verdict(flight, verdicts))
+    return " ".join(part for part in parts if part)
+
+
+def verdict_lines(verdicts: Sequence[Verdict]) -> list[tuple[str, bool]]:
+    """One line per requirement, aligned, and whether it is met."""
+    rows = [
+        (
+            verdict.metric if verdict.vehicle is None else f"{verdict.vehicle}.{verdict.metric}",
+            f"wanted {verdict.bound} {verdict.wanted:g} {verdict.unit}".rstrip(),
+            _got(verdict),
+        )
+        for verdict in verdicts
+    ]
+    widths = [max((len(row[k]) for row in rows), default=0) for k in range(3)]
+    return [
+        (
+            "  ".join([*(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)), _word(verdict.met)]),
+            verdict.met,
+        )
+        for row, verdict in zip(rows, verdicts, strict=True)
+    ]
+
+
+def _word(is_good: bool) -> str:
+    return "met" if is_good else "MISSED"
+
+
+def _got(verdict: Verdict) -> str:
+    if not math.isfinite(verdict.got):
+        text = "got no value"
+    else:
+        text = f"got {verdict.got:.4g} {verdict.unit}".rstrip()
+    return f"{text} ({verdict.worst})" if verdict.worst and verdict.vehicle is None else text
+
+
+def _ending(flight: Flight, mission: Mission) -> str:
+    whole = f"{mission.duration:g} s"
+    if flight.reason == "failed":
+        return f"The mission failed at {flight.flown:g} s of {whole}: {flight.failure}."
+    if flight.reason == "interrupted":
+        return f"Interrupted at {flight.flown:g} s of {whole}; all below is about the part that was flown."
+    wall = f", in {_duration(flight.wall_seconds)} of computing" if math.isfinite(flight.wall_seconds) else ""
+    return f"Flew {whole}{wall}."
+
+
+def _duration(seconds: float) -> str:
+    return f"{1000 * seconds:.2g} ms" if seconds < 0.995 else f"{seconds:.3g} s"
+
+
+def _keeping(flight: Flight, mission: Mission) -> Iterator[str]:
+    """How well the paths were kept, and whether steering or navigation limits it."""
+    lost = [name for name, found in flight.metrics.vehicles.items() if math.isnan(found.get("settling_time", math.nan))]
+    if lost:
+        limit, hold = mission.transient.threshold, mission.transient.hold
+        yield f"{_listed(lost)} never stayed within {limit:g} m of the path for {hold:g} s: most numbers are missing."
+        return
+    if not flight.metrics.vehicles:
+        return
+    last, who = flight.metrics.worst("settling_time")
+    often, _ = flight.metrics.worst("cross_track_p95")
+    alone = len(flight.vehicle_names) == 1
+    who_reached = "The vehicle reached its path" if alone else "Every vehicle reached its path"
+    after = f"after {last:.0f} s" if alone else f"the last ({who}) after {last:.0f} s"
+    if math.isnan(often):
+        yield f"{who_reached}, {after}."
+        return
+    yield f"{who_reached}, {after}, and from then on was within {number(often)} m of it 95 % of the time."
+    yield from _cause(flight)
+
+
+def _cause(flight: Flight) -> Iterator[str]:
+    """Whether the vehicle that was worst was lost or steered badly, from the log's rows after it settled."""
+    _, name = flight.metrics.worst("cross_track_rms")
+    if name is None:
+        return
+    rows = flight.times >= flight.metrics.vehicles[name].get("settling_time", math.nan)
+    place = flight.vehicle_names.index(name)
+    true, believed = (_rms(flight.channels[c][rows, place]) for c in ("cross_track", "cross_track_estimate"))
+    if not true > NOTICEABLE or math.isnan(believed):
+        return
+    who = "It" if len(flight.vehicle_names) == 1 else f"{name}, the worst,"
+    if believed < 0.6 * true:
+        yield f"{who} believed itself closer ({number(believed)} m rms): knowing where it is limits it, not steering."
+    elif believed > 1.6 * true:
+        yield f"{who} believed itself further off ({number(believed)} m rms): its position estimate is noisy."
+    else:
+        yield f"{who} knew it ({number(believed)} m rms believed): steering limits it as much as navigation."
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2))) if values.size else math.nan
+
+
+def _together(flight: Flight) -> Iterator[str]:
+    if len(flight.vehicle_names) == 1:
+        return
+    rms, worst = (flight.metrics.worst(f"coordination_error_{kind}")[0] for kind in ("rms", "max"))
+    if math.isfinite(rms):
+        yield f"Along the path they kept together to {number(rms)} m rms, {number(worst)} m at worst."
+    nearest, _ = flight.metrics.worst("separation_min")
+    if math.isfinite(nearest):
+        yield f"No two came closer than {number(nearest)} m."
+    heard = share_heard(flight)
+    if heard < 0.995:
+        yield f"{100 * (1 - heard):.0f} % of the messages were lost."
+
+
+def _verdict(flight: Flight, verdicts: Sequence[Verdict]) -> Iterator[str]:
+    met, missed = is_met(flight, verdicts), [v.metric for v in verdicts if not v.met]
+    if met:
+        yield "All that was required is met." if len(verdicts) > 1 else "What was required is met."
+    elif met is False:
+        yield (
+            f"Missed: {_listed(missed)}, of {len(verdicts)} required." if len(verdicts) > 1 else f"Missed: {missed[0]}."
+        )
+    elif verdicts:
+        yield "What was required cannot be judged, for the mission did not come to its end."
+
+
+def _listed(names: Sequence[str], most: int = 4) -> str:
+    shown = list(dict.fromkeys(names))
+    if len(shown) > most:
+        return f"{', '.join(shown[:most])} and {len(shown) - most} more"
+    return " and ".join([", ".join(shown[:-1]), shown[-1]] if len(shown) > 1 else shown)

@@ -1,0 +1,123 @@
+"""Metrics of a flight, from the sums that the engine kept."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from cardume.paths.table import LENGTH_REFERENCE
+from cardume.simulation.flight import Metrics
+from cardume.simulation.fly import Flown
+from cardume.simulation.score import (
+    BINS,
+    CROSS_TRACK,
+    FLEET_SCORES,
+    FORMATION,
+    HISTOGRAMS,
+    SCORES,
+    FleetScore,
+    Formation,
+    Score,
+    Talk,
+)
+
+
+def metrics_of(flown: Flown) -> Metrics:
+    """All metrics of a flight, per vehicle and for the fleet.
+
+    Args:
+        flown: a mission after its flight.
+
+    Returns:
+        Metrics in the order of the mission's vehicles; NaN where there is none, as before the transient ended.
+    """
+    plan, size = flown.plan, len(flown.plan.vehicles)
+    rows = flown.tables.scores.reshape(size, SCORES.width)
+    histograms = flown.tables.histograms.reshape(size, HISTOGRAMS, BINS)
+    place = {vehicle: row for row, vehicle in enumerate(plan.order)}
+    vehicles = {}
+    for k, vehicle in enumerate(plan.vehicles):
+        row = rows[place[k]]
+        score, talk = _record(row, Score), _record(row, Talk)
+        formation = _record(row, Formation)
+        length = float(vehicle.path[LENGTH_REFERENCE])
+        found = _of_path(score, histograms[place[k]], length) | _of_talk(talk)
+        if size > 1:
+            found |= _of_formation(formation, histograms[place[k]])
+        if plan.rules.swath > 0.0:
+            found["swath_coverage"] = 100.0 * min(1.0, score.swept / length)
+        vehicles[vehicle.name] = found
+    fleet = FleetScore(*flown.tables.fleet_score[: FLEET_SCORES.width])
+    return Metrics(fleet=_of_fleet(fleet) if size > 1 else {}, vehicles=vehicles)
+
+
+def _record(row: np.ndarray, record: Any) -> Any:
+    start = SCORES.offsets[record]
+    return record(*(float(x) for x in row[start : start + len(record._fields)]))
+
+
+def _of_path(score: Score, histograms: np.ndarray, length: float) -> dict[str, float]:
+    counted = score.line_time + score.arc_time
+    return {
+        "cross_track_rms": _rms(score.line_squares + score.arc_squares, counted),
+        "cross_track_p95": percentile(histograms[CROSS_TRACK], 0.95),
+        "cross_track_max": score.cross_track_max if counted else math.nan,
+        "cross_track_rms_lines": _rms(score.line_squares, score.line_time),
+        "cross_track_rms_arcs": _rms(score.arc_squares, score.arc_time),
+        "settling_time": score.settling_time if score.settled else math.nan,
+        "position_error_rms": _rms(score.position_squares, score.flown),
+        "current_error_rms": _rms(score.current_squares, score.flown),
+        "path_speed_mean": score.progress / counted if counted else math.nan,
+        "energy": score.energy,
+        "yaw_effort": score.yaw_effort,
+    }
+
+
+def _of_formation(formation: Formation, histograms: np.ndarray) -> dict[str, float]:
+    return {
+        "formation_error_rms": _rms(formation.squares, formation.time),
+        "formation_error_p95": percentile(histograms[FORMATION], 0.95),
+        "formation_error_rms_relative": _rms(formation.relative_squares, formation.time),
+    }
+
+
+def _of_talk(talk: Talk) -> dict[str, float]:
+    return {
+        "messages_sent": talk.sent,
+        "messages_delivered": talk.delivered,
+        "information_age_mean": talk.age_sum / talk.delivered if talk.delivered else math.nan,
+        "information_age_max": talk.age_max if talk.delivered else math.nan,
+    }
+
+
+def _of_fleet(score: FleetScore) -> dict[str, float]:
+    return {
+        "coordination_error_rms": _rms(score.coordination_squares, score.time),
+        "coordination_error_max": score.coordination_max if score.time else math.nan,
+        "separation_min": math.sqrt(score.separation_squared),
+    }
+
+
+def _rms(squares: float, time: float) -> float:
+    return math.sqrt(squares / time) if time > 0.0 else math.nan
+
+
+def percentile(bins: np.ndarray, share: float) -> float:
+    """The error that a share of the counted ticks stays below, from a histogram; a straight line within a bin.
+
+    Args:
+        bins: [-] (BINS,) counts; bin k holds errors e [m] with BINS e / (1 + e) in [k, k + 1).
+        share: [-] between 0 and 1.
+
+    Returns:
+        The error [m]; NaN where nothing was counted.
+    """
+    total = bins.sum()
+    if total == 0.0:
+        return math.nan
+    below = np.concatenate([[0.0], np.cumsum(bins)])
+    k = int(np.searchsorted(below, share * total, side="left")) - 1
+    k = min(max(k, 0), BINS - 1)
+    within = (share * total - below[k]) / bins[k] if bins[k] else 0.0
+    x = min((k + within) / BINS, 1.0 - 1e-9)
+    return x / (1.0 - x)
