@@ -351,7 +351,7 @@ class Law:
         body = "\n".join([call, *stores, "    return as_answer(memory, answer)"])
         made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function))
         name = f"{self.family}_{self.name}_{made_of}_{'lanes' if lanes else 'scalar'}"
-        scope = {"law": with_compiled_helpers(self.function), "Memory": self.memory_type}
+        scope = {"__name__": __name__, "law": with_compiled_helpers(self.function), "Memory": self.memory_type}
         scope |= {"load": load, "store": store, "at": at, "as_answer": law_answer(self._family.result)}
         exec(compile(f"def {name}({signals}, gains, memory, dt):\n{body}", __file__, "exec"), scope)
         return scope[name]

@@ -58,6 +58,7 @@ BAD = {
     "an alias": after("compensation: &c {law: crab}\nguidance: *c\n", 2, "guidance", "alias", "write the value out"),
     "a tag that runs code": after("seed: !!python/object/apply:os.getpid []\n", 1, "seed", "tag"),
     "the same section twice": after("seed: 1\nend: hold\nseed: 2\n", 3, "seed", "given twice, on lines 9 and 11"),
+    "a whole mission swept": Bad("sweep: [{cardume: 1}]\n", 1, "", ("cannot vary as a whole",)),
     # version, name, numbers
     "no version": instead("cardume: 1\n", "", 1, "cardume", "missing", "must be 1"),
     "a later version": instead("cardume: 1", "cardume: 2", 1, "cardume", "given 2", "must be 1"),
@@ -149,7 +150,7 @@ BAD = {
     "vehicles as words": Bad(HEAD + "vehicles: [port]\n", 6, "vehicles.0", ("given 'port'", "keys name")),
     "a vehicle without a name": Bad(HEAD + "vehicles:\n  - depth: 3 m\n", 7, "vehicles.0.name", ("missing",)),
     "equal names": instead("starboard", "port", 8, "vehicles.port", "on lines 7 and 8"),
-    "a vehicle's name with a slash": instead("starboard", "a/b", 8, "vehicles.a/b.name", "letters, digits"),
+    "a vehicle's name with a slash": instead("starboard", "a/b", 8, "vehicles.1.name", "letters, digits"),
     "a vehicle's name that is true": instead("starboard", "true", 8, "vehicles.1.name", "given true"),
     "a vehicle in the air": instead(
         "name: port", "{name: port, depth: -3 m}", 7, "vehicles.port.depth", "at least 0 m"

@@ -11,15 +11,16 @@ from typing import Any, NamedTuple
 import pytest
 
 from cardume.errors import MissionError
-from cardume.missions.schema import Forms, Group, Quantity, Variant, fields_of, records_of
-from cardume.missions.source import Node, parse_yaml
 from cardume.missions.mission import Mission
+from cardume.missions.schema import Forms, Group, Quantity, fields_of, records_of
+from cardume.missions.source import Node, parse_yaml
 from cardume.missions.vehicle import SHARED
 from missions.helpers import DESIGN, SMALLEST, parse
 
 HERE = Path(__file__)
 MISSIONS = {
-    "design": (DESIGN, "swath=10 m", "vehicles.surface.sensors.dvl={}"),
+    "design": (DESIGN.replace("  - name: starboard\n", ""), "swath=10 m", "vehicles.surface.sensors.dvl={}"),
+    "line": (SMALLEST,),
     "arc": (SMALLEST, "path={type: arc, radius: 9 m, angle: 90 deg}", "current={type: gridded, file: helpers.py}"),
     "circle": (SMALLEST, "path={type: circle, centre: {north: 1, east: 2}, radius: 9}", "guidance.law=arcsine"),
     "segments": (
@@ -30,6 +31,7 @@ MISSIONS = {
     "file": (SMALLEST, "path={type: file, file: helpers.py}"),
 }
 REPEATED = {
+    "line": ("path",),
     "circle": ("path", "guidance"),
     "segments": ("path", "guidance"),
     "arc": ("path", "current"),
@@ -71,8 +73,6 @@ TREES = {name: saved(name) for name in MISSIONS}
 KEYS = [
     key for name, tree in TREES.items() for key in keys_below(name, tree) if key.words[0] in REPEATED.get(name, tree)
 ]
-OPTIONAL = {"origin", "swath", "require", "initial_estimate"}
-TEXTS = ("name", "law", "type", "reference_point", "topology", "schedule", "channel", "reader", "turn", "file", "end")
 
 
 def written(key: Key, change: Any) -> tuple[str, str]:
@@ -87,7 +87,7 @@ def written(key: Key, change: Any) -> tuple[str, str]:
 
 def dotted(key: Key) -> str:
     words = list(key.words)
-    if words[0] == "vehicles" and len(words) > 1:
+    if words[0] == "vehicles" and len(words) > 2 and words[2] != "name":
         words[1] = TREES[key.mission]["vehicles"][words[1]]["name"]
     return ".".join(map(str, words))
 
@@ -97,13 +97,9 @@ def refused_at(text: str, key: str) -> list[str]:
     with pytest.raises(MissionError) as caught:
         parse(text, directory=HERE.parent)
     for problem in caught.value.problems:
-        assert problem.position.line > 0 or key == "cardume"
+        assert problem.position.line > 0
         assert str(problem).isprintable()
     return [p.message for p in caught.value.problems if p.position.key == key or p.position.key.startswith(key + ".")]
-
-
-def line_named(text: str, line: int, word: str | int) -> bool:
-    return isinstance(word, int) or f'"{word}"' in text.splitlines()[line - 1]
 
 
 def replaced(value: Any) -> Any:
@@ -127,12 +123,14 @@ def test_a_missing_key_has_a_default_or_is_named(key: Key) -> None:
     try:
         read = parse(text, directory=HERE.parent)
     except MissionError as error:
-        found = [p for p in error.problems if p.position.key.startswith(name) and "missing" in p.message]
-        # Without its law or type a section's other keys may be unknown instead.
-        is_selector = key.words[-1] in ("law", "type", "schedule", "channel", "reader", "reference_point")
-        assert found or (is_selector and all("there is no key" in p.message for p in error.problems)), str(error)
+        problems = error.problems
     else:
         assert parse(read.to_yaml(), directory=HERE.parent) == read
+        return
+    is_named = any(p.position.key.startswith(name) and "missing" in p.message for p in problems)
+    # Without its law a section's other keys may be unknown instead.
+    is_selector = key.words[-1] in ("law", "type", "schedule", "channel", "reader", "reference_point")
+    assert is_named or (is_selector and all("there is no key" in p.message for p in problems)), problems
 
 
 @pytest.mark.parametrize("key", NAMED, ids=str)
@@ -160,7 +158,7 @@ def test_a_key_given_twice_is_named_with_both_lines(key: Key) -> None:
     def change(parent: Any, _: Any) -> None:
         parent[word + "@twice"] = parent[word]
 
-    text, name = written(key, change)
+    text, _ = written(key, change)
     lines = [n for n, line in enumerate(text.splitlines(), 1) if f'"{word}"' in line]
     with pytest.raises(MissionError) as caught:
         parse(text, directory=HERE.parent)
@@ -175,7 +173,6 @@ WRONG = {
     "a list": [[], [1]],
     "a mapping": {"x": {}},
     "odd text": "\x00\u202e{{no such thing",
-    "an empty text": "",
 }
 
 
@@ -191,12 +188,9 @@ NOT_NUMBERS = {
     "not a number": ".nan",
     "infinite": "-.inf",
     "huge": "1e300",
-    "huge with a unit": '"1e300 km"',
     "too large to store": "1e999",
-    "400 digits": "9" * 400,
     "another dimension": '"5 kg"',
     "an unknown unit": '"5 parsec"',
-    "a unit alone": '"m"',
 }
 
 

@@ -624,13 +624,16 @@ def test_a_file_cut_anywhere_is_refused(tmp_path: Path, kind: str) -> None:
 
 
 def test_the_promised_size_is_the_size(tmp_path: Path) -> None:
-    for kind, unlimited in itertools.product(("NETCDF3_CLASSIC", "NETCDF3_64BIT_DATA"), (False, True)):
+    several = (("a", "i1", ("t", "x")), ("b", "f8", ("x",)), ("c", "i2", ("t",)))
+    one = several[:2]  # the only variable with records is not padded
+    kinds = ("NETCDF3_CLASSIC", "NETCDF3_64BIT_DATA")
+    for kind, unlimited, variables in itertools.product(kinds, (False, True), (several, one)):
         path = tmp_path / "file.nc"
         with Dataset(path, "w", format=kind) as file:
             file.title = "odd"
             file.createDimension("t", None if unlimited else 3)
             file.createDimension("x", 5)
-            for name, dtype, dimensions in (("a", "i1", ("t", "x")), ("b", "f8", ("x",)), ("c", "i2", ("t",))):
+            for name, dtype, dimensions in variables:
                 file.createVariable(name, dtype, dimensions)[:] = np.ones([{"t": 3, "x": 5}[d] for d in dimensions])
         size = promised_size(path)
         assert size is not None
@@ -773,6 +776,22 @@ def test_a_pole_is_refused() -> None:
 # ---- the real field, and the one made up -----------------------------------------------------------------------------
 
 CADIZ = place(36.80, -7.24)
+
+
+def test_a_whole_earth_may_be_looked_up_anywhere(tmp_path: Path) -> None:
+    sample = Sample(longitude_deg=0.0)
+    flat(sample)
+    sample.values["lon"] = np.arange(0.0, 360.0, 0.5)
+    for attributes in sample.attributes:
+        attributes["units"] = "mm/s"  # the truth grows to 100 of it
+    field = read_current(sample.write(tmp_path / "sample.nc"))
+    for longitude_deg in (0.1, 100.0, 179.9, -179.9, -60.0):
+        east, north = np.multiply(truth(0.0, 0.0, 0.01, longitude_deg), 0.001)
+        rows, north_scale = field.to_rows(place(36.8, longitude_deg)), meters_per_degree(math.radians(36.8))[0]
+        if abs(longitude_deg) < 179.0:  # the truth jumps at 180
+            assert water_at(rows, 0.01 * north_scale, 0.0, 0.0, 0.0) == pytest.approx((north, east), abs=1e-9)
+        assert np.isfinite(water_at(rows, 0.0, 30e3, 0.0, 0.0)).all()
+        assert np.isfinite(water_at(rows, 0.0, -30e3, 0.0, 0.0)).all()
 
 
 @needs_real_file

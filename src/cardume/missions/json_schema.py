@@ -11,7 +11,6 @@ from typing import Any
 from cardume.missions.catalog import Catalog
 from cardume.missions.lookup import inlined_laws, law_fields
 from cardume.missions.mission import Mission
-from cardume.missions.reading import SAFE_NAME
 from cardume.missions.schema import (
     Field,
     Forms,
@@ -28,6 +27,7 @@ from cardume.missions.schema import (
     Word,
     fields_of,
 )
+from cardume.missions.source import SAFE_NAME
 from cardume.missions.varying import SCOPES, WAYS
 from cardume.missions.vehicle import SHARED
 from cardume.units import units_like

@@ -16,6 +16,7 @@ from cardume.missions.overrides import apply_overrides, merge
 from cardume.missions.reading import read, read_record
 from cardume.missions.rules import check_rules
 from cardume.missions.source import Node, all_positions, item_name, label, parse_yaml, read_text
+from cardume.missions.varying import is_varying
 from cardume.missions.vehicle import SHARED
 from cardume.units import printable
 
@@ -58,6 +59,8 @@ def parse_mission(
     tree = parse_yaml(text, source)
     if not isinstance(tree.value, dict):
         raise tree.error(f"given {tree.given()}; a mission is a mapping, a line 'key: value' for each key")
+    if is_varying(tree):
+        raise tree.error("a mission cannot vary as a whole; let its values or sections vary")
     context = Context(catalog=catalog, directory=Path(directory))
     tree = label(apply_overrides(tree, overrides, context))
     mission = _read_tree(tree, dataclasses.replace(context, fleet=_fleet(tree)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import MISSING
 from functools import singledispatch
@@ -31,13 +30,11 @@ from cardume.missions.schema import (
     Word,
     fields_of,
 )
-from cardume.missions.source import Node, join, nearest_file
+from cardume.missions.source import SAFE_NAME, Node, join, nearest_file
 from cardume.missions.varying import is_varying, read_varying
 from cardume.missions.vehicle import LawChoice, Table
 from cardume.missions.wording import keys_of, unknown, wanted
 from cardume.units import parse_quantity, show_text
-
-SAFE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
 
 def read(kind: Kind, node: Node, context: Context) -> Any:
@@ -206,7 +203,11 @@ def _variant(kind: Variant, node: Node, context: Context) -> Any:
     entries = as_entries(kind, node)
     named = entries.pop("type", None)
     if named is None:
-        raise missing(node, "type", f"must be one of {', '.join(kind.records)}")
+        collector = Collector()
+        collector.add(missing(node, "type", f"must be one of {', '.join(kind.records)}"))
+        anywhere = {"type"}.union(*(keys_of(record) for record in kind.records.values()))
+        _refuse_unknown(entries, anywhere, node, collector)
+        raise MissionError(collector.problems)
     if is_varying(named):
         raise named.error("a varying type carries its keys: write {sweep: [{type: ..., ...}, {type: ..., ...}]}")
     record = kind.records.get(named.value) if isinstance(named.value, str) else None

@@ -33,6 +33,7 @@ from cardume.units import printable, show_text
 
 MAX_BYTES = 500_000  # some ten seconds of reading; a mission has a few thousand
 MAX_DEPTH = 24
+SAFE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 NOT_FINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
 CONSTANTS = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False} | dict.fromkeys(
@@ -155,9 +156,10 @@ def join(*words: str) -> str:
 
 
 def item_name(node: Node, index: int, key: str) -> str:
-    """How a list item is addressed: a vehicle by its name, anything else by its index."""
+    """How a list item is addressed: a vehicle by its name, if it is a good one, anything else by its index."""
     name = node.value.get("name") if key == "vehicles" and isinstance(node.value, dict) else None
-    return name.value if name is not None and isinstance(name.value, str) and name.value else str(index)
+    is_good = name is not None and isinstance(name.value, str) and SAFE_NAME.fullmatch(name.value)
+    return name.value if name is not None and is_good else str(index)
 
 
 def _children(node: Node, key: str) -> list[tuple[str, Node]]:
@@ -205,8 +207,17 @@ class _Builder:
                 self._note(event, "", "a second document begins here; one file holds one mission, remove '---'")
                 break
         if self.problems:
-            raise MissionError(self.problems)
+            raise MissionError(self._by_name(problem, node) for problem in self.problems)
         return node
+
+    def _by_name(self, problem: Problem, document: Node) -> Problem:
+        """While a file is read a vehicle has no name yet, only its index."""
+        root, *words = problem.position.key.split(".")
+        vehicles = document.value.get(root) if isinstance(document.value, dict) and root == "vehicles" else None
+        if vehicles is None or not words or not isinstance(vehicles.value, list):
+            return problem
+        name = item_name(vehicles.value[int(words[0])], int(words[0]), root)
+        return problem._replace(position=problem.position._replace(key=join(root, name, *words[1:])))
 
     def _note(self, event: Any, key: str, message: str) -> None:
         position = Position(self.source, event.start_mark.line + 1, printable(key[:200]) or "syntax")

@@ -101,7 +101,7 @@ class ThrusterSpeed:
     """The sensor of shaft speed, and how its readings become speed through the water."""
 
     law: Annotated[LawChoice, Laws("thruster_speed", inlined=True)]
-    reader: Annotated[LawChoice, Laws("speed", "reader", inlined=True)]
+    reader: Annotated[LawChoice, Laws("speed", "reader", "thruster_calibration", inlined=True)]
 
 
 NO_SENSOR: Mapping[str, Any] = {"none": None}

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from cardume.compiler import Rows, at, compiled, load, some, where
-from cardume.maths import to_cartesian, to_ned_3d
+from cardume.maths import to_cartesian, to_ned, to_ned_3d
 from cardume.onboard.coordination import correct_speed
 from cardume.onboard.estimation.neighbors import predict
 from cardume.onboard.messaging import decide_to_send
@@ -13,7 +13,10 @@ from cardume.onboard.mind import (
     Speech,
     get_acquaintance,
     get_along,
+    get_current,
+    get_setup,
     get_speech,
+    get_speed,
     head_of,
     is_fresh,
     message_from,
@@ -93,18 +96,24 @@ def _updated(known: Acquaintance, state: float, path_speed: float, valid: float,
 def look_around(mind: Mind, measured: Measured, position: NavigationEstimate, error: PathError, time: float) -> None:
     """With a USBL head: turn each new reading into the other's position and coordination state.
 
-    p_j = p_1 + R_1 r, R_1 the measured attitude; gamma_j is the projection of p_j on j's own path.
+    p_j = p_1 - V_1 age + R_1 r, R_1 the measured attitude, turned back by the yaw rate times the age;
+    gamma_j is the projection of p_j on j's own path.
     """
-    for vehicle in range(mind.size):
+    shares = some(get_setup(mind.own, 0).shares_sightings > 0.5)
+    speed, current = get_speed(mind.own, 0), get_current(mind.own, 0)
+    way_north, way_east = to_ned(measured.heading, speed.surge, speed.sway)
+    for vehicle in range(mind.size if shares else 0):
         reading = at(measured.usbl, vehicle * USBL_WIDTH)
         age = load(reading, 3)
         is_new = age == age
         if some(is_new):
             ahead, starboard, down = to_cartesian(load(reading, 0), load(reading, 1), load(reading, 2))
             north, east, _ = to_ned_3d(
-                measured.roll, measured.pitch, measured.heading, ahead, starboard, down
+                measured.roll, measured.pitch, measured.heading - measured.yaw_rate * age, ahead, starboard, down
             )
-            sight(mind, vehicle, is_new, position.north + north, position.east + east, time - age, error)
+            north = north + position.north - age * (way_north + current.north)
+            east = east + position.east - age * (way_east + current.east)
+            sight(mind, vehicle, is_new, north, east, time - age, error)
 
 
 @compiled

@@ -10,7 +10,9 @@ from cardume.vehicles.hull import drag, sway_step
 # How the gains change with speed: see `feedforward_pid`.
 SOFTENING = 1.0 / 0.9**2  # [s^2/m^2] the heading gain is halved at 0.9 m/s
 STIFFENING = 1.0 / 1.4**2  # [s^2/m^2] the yaw-rate gain is doubled at 1.4 m/s
-SMALL_ERROR = 0.05  # [rad] the integral counts no error as larger; held beyond it, it would wander with a noisy reference
+SMALL_ERROR = (
+    0.05  # [rad] the integral counts no error as larger; held beyond it, it would wander with a noisy reference
+)
 INTEGRAL_SHARE = 0.2  # [-] of the largest moment that the integral may take
 
 

@@ -95,7 +95,7 @@ def _nodes_away(grid: Rows, start: float, k: float, step: float, last: float, x:
 @compiled
 def _add_node(grid: Rows, sums: Sums, row: float, weight: float) -> Sums:
     north, east = gather(grid, row), gather(grid, row + 1.0)
-    is_water = (north == north) & (east == east) & (weight > 0.0)
+    is_water = (north == north) & (east == east)
     return Sums(
         sums.weight + where(is_water, weight, 0.0),
         sums.north + where(is_water, weight * north, 0.0),

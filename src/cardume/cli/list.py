@@ -1,0 +1,160 @@
+"""`cardume list`: the laws that a mission may name, the built-in missions, the metrics."""
+
+import json
+import math
+import re
+import shutil
+import sys
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cardume.cli.options import allow_code_option, json_option, quiet_option
+from cardume.units import nearest, show_quantity
+
+# Where in a mission a family is chosen, if not under its own name.
+KEYS = {
+    "reference_point": "guidance.reference_point",
+    "messaging": "messaging, as schedule",
+    "acoustics": "acoustics, as channel",
+    "current": "current, as type",
+    "speed": "sensors.thruster_speed, as reader",
+    **{name: f"sensors.{name}" for name in ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed")},
+}
+
+
+@click.command("list")
+@click.argument("what", required=False, metavar="[FAMILY|missions|metrics]")
+@allow_code_option
+@quiet_option
+@json_option
+def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
+    """List the families of laws, the laws of FAMILY, the built-in missions, or the metrics."""
+    del allow_code  # taken everywhere, though only ours are listed
+    if what is None:
+        found = _families()
+    elif what == "missions":
+        found = _missions()
+    elif what == "metrics":
+        found = _metrics()
+    else:
+        found = _laws(what)
+    if as_json:
+        click.echo(json.dumps(found, indent=2))
+    elif quiet:
+        for entry in found:
+            click.echo(entry["name"])
+    else:
+        for entry in found:
+            _say(entry)
+        if what is None:
+            click.echo("\ncardume list FAMILY, cardume list missions, cardume list metrics say more.")
+    return 0
+
+
+def _every_law() -> Mapping[str, Mapping[str, Any]]:
+    from cardume.missions.available import every_law
+
+    return {family: laws for family, laws in every_law().items() if laws}
+
+
+def _families() -> list[dict[str, Any]]:
+    return [
+        {"name": name, "summary": _about(next(iter(laws.values()))), "key": KEYS.get(name, name), "laws": list(laws)}
+        for name, laws in _every_law().items()
+    ]
+
+
+def _about(law: Any) -> str:
+    """The first line of the room that a law stands in."""
+    package = law.__module__.rpartition(".")[0]
+    return (getattr(sys.modules.get(package), "__doc__", None) or "").strip().partition("\n")[0]
+
+
+def _laws(family: str) -> list[dict[str, Any]]:
+    families = _every_law()
+    if family not in families:
+        names = [*families, "missions", "metrics"]
+        hint = nearest(family, names) or "."
+        raise click.UsageError(f"There is no family '{family}'{hint} There are {', '.join(names)}")
+    return [describe(law) for law in families[family].values()]
+
+
+def describe(law: Any) -> dict[str, Any]:
+    """A law in plain values: its one line, equation, source, and parameters with unit, default and bounds.
+
+    Args:
+        law: of any family.
+    """
+    paragraphs = [part.strip() for part in re.split(r"\n\s*\n", law.doc)]
+    equations = [
+        part for part in paragraphs[1:] if "=" in part and not re.match(r"(Args|Returns|Raises|Source)\b", part)
+    ]
+    source = re.search(r"^\s*Source:\s*(.+?)\s*\Z", law.doc, re.DOTALL | re.MULTILINE)
+    return {
+        "name": law.name,
+        "summary": " ".join(paragraphs[0].split()),
+        "equation": textwrap.dedent(equations[0]) if equations else "",
+        "parameters": [_parameter(parameter) for parameter in law.parameters],
+        "source": " ".join(source[1].split()) if source else "",
+    }
+
+
+def _parameter(parameter: Any) -> dict[str, Any]:
+    return {
+        "name": parameter.name,
+        "default": parameter.default,
+        "unit": parameter.unit,
+        "low": parameter.low if math.isfinite(parameter.low) else None,
+        "high": parameter.high if math.isfinite(parameter.high) else None,
+        "low_open": parameter.low_open,
+        "high_open": parameter.high_open,
+    }
+
+
+def _missions() -> list[dict[str, Any]]:
+    from cardume.missions import library
+
+    return [{"name": name, "summary": library.describe(name)} for name in library.names()]
+
+
+def _metrics() -> list[dict[str, Any]]:
+    from cardume.simulation.flight import METRICS
+
+    return [
+        {"name": name, "summary": metric.meaning, "unit": metric.unit, "wanted": metric.wanted}
+        for name, metric in METRICS.items()
+    ]
+
+
+def _say(entry: Mapping[str, Any]) -> None:
+    width = min(shutil.get_terminal_size().columns, 100)
+    unit = f" [{entry['unit']}]" if entry.get("unit") else ""
+    click.echo(f"{click.style(entry['name'], bold=True)}{unit}")
+    if entry["summary"]:
+        click.echo(_indented(entry["summary"], width))
+    for line in entry.get("equation", "").splitlines():
+        click.echo(f"      {line.strip()}")
+    for parameter in entry.get("parameters", ()):
+        click.echo(f"    {_one_line(parameter)}")
+    if entry.get("source"):
+        click.echo(_indented(f"Source: {entry['source']}", width))
+    if "laws" in entry:
+        click.echo(_indented(f"{entry['key']}: {', '.join(entry['laws'])}", width))
+
+
+def _one_line(parameter: Mapping[str, Any]) -> str:
+    unit, ends = parameter["unit"], []
+    if parameter["low"] is not None:
+        ends.append(f"{'above' if parameter['low_open'] else 'at least'} {show_quantity(parameter['low'], unit)}")
+    if parameter["high"] is not None:
+        ends.append(f"{'below' if parameter['high_open'] else 'at most'} {show_quantity(parameter['high'], unit)}")
+    default = show_quantity(parameter["default"], unit)
+    return f"{parameter['name']:<20} {default:<12} {' and '.join(ends)}".rstrip()
+
+
+def _indented(text: str, width: int) -> str:
+    return textwrap.fill(text, width, initial_indent="    ", subsequent_indent="    ", break_on_hyphens=False)

@@ -1,0 +1,77 @@
+"""What a long run shows while it runs: on a terminal, on stderr, and only when it takes more than a second."""
+
+import sys
+import threading
+from types import TracebackType
+from typing import Any
+
+import click
+
+PATIENCE = 1.0  # [s] before anything is shown
+WORDS = {"compile": "compiling the engine, once per installation", "fly": "flying"}
+
+
+class Progress:
+    """Called with a stage, how much of it is done, and how much there is; shows it when it takes long.
+
+    Args:
+        is_shown: whether anything may be shown at all.
+    """
+
+    def __init__(self, is_shown: bool = True) -> None:
+        self._is_terminal = sys.stderr.isatty()
+        self._is_shown = is_shown
+        self._lock = threading.Lock()
+        self._timer: threading.Timer | None = None
+        self._bar: Any = None
+        self._stage, self._done, self._total = "", 0.0, 0.0
+
+    def __enter__(self) -> "Progress":
+        return self
+
+    def __exit__(self, _kind: type | None, _error: BaseException | None, _trace: TracebackType | None) -> None:
+        self._end_stage()
+
+    def __call__(self, stage: str, done: float, total: float) -> None:
+        if not self._is_shown:
+            return
+        if stage != self._stage:
+            self._end_stage()
+            self._stage = stage
+            # A timer, for a single piece of the compilation takes longer than the patience.
+            self._timer = threading.Timer(PATIENCE, self._show)
+            self._timer.daemon = True
+            self._timer.start()
+        with self._lock:
+            self._done, self._total = done, total
+            if self._bar is not None:
+                self._bar.update(self._bar.task_ids[0], completed=done, total=total)
+        if done >= total:
+            self._end_stage()
+
+    def _end_stage(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        with self._lock:
+            self._timer = None
+            if self._bar is not None:
+                self._bar.stop()
+                self._bar = None
+
+    def _show(self) -> None:
+        if not self._is_terminal:
+            if self._stage == "compile":  # a log that stands still for that long needs a word
+                click.echo(f"{WORDS['compile']} ...", err=True)
+            return
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+        with self._lock:
+            if self._timer is None:
+                return
+            text, count = TextColumn("{task.description}"), TextColumn("{task.completed:.0f} of {task.total:.0f}")
+            console = Console(stderr=True)
+            bar = Progress(text, BarColumn(24), count, TimeElapsedColumn(), console=console, transient=True)
+            bar.add_task(WORDS.get(self._stage, self._stage), completed=self._done, total=self._total)
+            bar.start()
+            self._bar = bar

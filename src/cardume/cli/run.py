@@ -1,0 +1,230 @@
+"""`cardume run`: fly a mission and keep what comes out."""
+
+import shlex
+import shutil
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from cardume.cli.options import (
+    allow_code_option,
+    find_mission,
+    json_option,
+    mission_argument,
+    quiet_option,
+    seed_option,
+    set_option,
+)
+from cardume.cli.progress import Progress
+from cardume.cli.stopping import Stopped, Stopping
+
+if TYPE_CHECKING:
+    from cardume.missions.mission import Mission
+    from cardume.simulation.flight import Flight
+
+DONE, MISSED, FAILED, BUG = 0, 1, 3, 4
+WIDEST_TEXT = 100
+
+
+class Request(NamedTuple):
+    """What the user typed."""
+
+    mission: str
+    output: Path | None
+    seed: int | None
+    overrides: tuple[str, ...]
+    no_figures: bool
+    allow_code: tuple[Path, ...]
+    quiet: bool
+    as_json: bool
+
+    @property
+    def is_talkative(self) -> bool:
+        """Whether a person reads along."""
+        return not (self.quiet or self.as_json)
+
+
+@click.command()
+@mission_argument
+@click.option(
+    "-o", "output", type=click.Path(path_type=Path), metavar="DIR", help="Where to; else runs/NAME/001, 002, ..."
+)
+@seed_option
+@set_option
+@click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@allow_code_option
+@quiet_option
+@json_option
+def run(**given: Any) -> int:
+    """Fly MISSION: a mission file, a path file, or a built-in mission (cardume list missions).
+
+    Keeps the log, the numbers, the resolved mission and two figures, and says what they mean.
+
+    \b
+    Exit code 0: done, and what the mission requires is met; 1: requirements missed;
+    2: bad input; 3: failed while flying; 130 or 143: interrupted, what was flown is kept.
+    """
+    request = Request(**given)
+    with Stopping() as stopping:
+        return _run(request, stopping)
+
+
+def _run(request: Request, stopping: Stopping) -> int:
+    from cardume.missions.flying import fly_mission
+    from cardume.missions.results import ResultsError, choose_destination, write_results
+
+    mission = find_mission(request.mission, request.overrides, request.seed, request.allow_code)
+    destination = choose_destination(mission.name, request.output)
+    with Progress(request.is_talkative) as progress:
+
+        def note(stage: str, done: int, total: int) -> None:
+            if stage == "fly":
+                stopping.begin_flight()
+            progress(stage, done, total)
+
+        flight = fly_mission(mission, progress=note, should_stop=stopping.is_asked, allow_code=request.allow_code)
+    drawing = Drawing(flight, stopping)
+    try:
+        directory, summary = write_results(
+            destination, mission, flight, version=_version(), draw=None if request.no_figures else drawing
+        )
+    except (ResultsError, Stopped):
+        if request.is_talkative:
+            _say_numbers(mission, flight)
+        raise
+    _report(request, mission, flight, directory, summary)
+    return _exit_code(flight, summary, drawing, stopping)
+
+
+class Drawing:
+    """Draws the figures; a flight is not lost for a figure that cannot be drawn."""
+
+    def __init__(self, flight: "Flight", stopping: Stopping) -> None:
+        self.flight, self.stopping = flight, stopping
+        self.problem: Exception | None = None
+
+    def __call__(self, folder: Path) -> None:
+        if self.stopping.is_asked():
+            return  # whoever pressed Ctrl-C does not want to wait for pictures
+        from cardume.report.figures import save_figures
+
+        try:
+            save_figures(self.flight, folder)
+        except OSError:
+            raise
+        except Exception as problem:
+            self.problem = problem
+
+
+def _exit_code(flight: "Flight", summary: dict[str, Any], drawing: Drawing, stopping: Stopping) -> int:
+    if flight.reason == "failed":
+        return FAILED
+    if stopping.is_asked():
+        return stopping.exit_code
+    if drawing.problem is not None:
+        from cardume.cli.bugs import save_traceback
+
+        where = save_traceback(drawing.problem)
+        click.echo(f"error: the figures could not be drawn, a bug in cardume; the details are in {where}", err=True)
+        return BUG
+    return MISSED if summary["requirements_met"] is False else DONE
+
+
+def _report(request: Request, mission: "Mission", flight: "Flight", directory: Path, summary: dict[str, Any]) -> None:
+    from cardume.missions.summary import to_json
+
+    if request.as_json:
+        click.echo(to_json(summary), nl=False)
+    elif not request.quiet:
+        _say_numbers(mission, flight)
+        _say_files(directory, summary["files"])
+        _say_next(request, mission, flight)
+    if flight.reason == "failed":
+        click.echo(f"error: the mission failed: {flight.failure}; what was flown is in {directory}", err=True)
+    elif flight.reason == "interrupted":
+        click.echo(f"interrupted at {flight.flown:g} s; what was flown is in {directory}", err=True)
+
+
+def _say_numbers(mission: "Mission", flight: "Flight") -> None:
+    from cardume.missions.summary import judge
+    from cardume.report.table import results_table
+    from cardume.report.words import meaning, verdict_lines
+
+    width = shutil.get_terminal_size().columns
+    verdicts = judge(mission.require, flight.metrics)
+    click.echo(f"\n{click.style(mission.name, bold=True)}, seed {flight.seed}\n")
+    click.echo(results_table(flight, width))
+    if verdicts:
+        click.echo("\nRequired")
+    for line, is_met in verdict_lines(verdicts):
+        click.secho(
+            textwrap.fill(line, max(width, 40), initial_indent="  ", subsequent_indent="    "),
+            fg="green" if is_met else "red",
+        )
+    click.echo()
+    click.echo(_filled(meaning(flight, mission, verdicts), width))
+
+
+def _say_files(directory: Path, files: Sequence[str]) -> None:
+    width = shutil.get_terminal_size().columns
+    click.echo(f"\nWritten to {directory}")
+    click.echo(_filled(", ".join(files), width, indent="  "))
+
+
+def _say_next(request: Request, mission: "Mission", flight: "Flight") -> None:
+    steps = next_steps(request, mission, flight)
+    longest = max(len(command) for command, _ in steps)
+    width = shutil.get_terminal_size().columns
+    click.echo("\nNext")
+    for command, why in steps:
+        fits = longest + 4 + max(len(why) for _, why in steps) <= width
+        click.echo(f"  {command:<{longest}}  {why}" if fits else f"  {command}\n      {why}")
+
+
+def next_steps(request: Request, mission: "Mission", flight: "Flight") -> list[tuple[str, str]]:
+    """Commands that make sense after this run, and why.
+
+    Args:
+        request: what was typed.
+        mission: as flown.
+        flight: what came out.
+    """
+    same = [request.mission]
+    for text in request.overrides:
+        same += ["--set", text]
+    for folder in request.allow_code:
+        same += ["--allow-code", str(folder)]
+    steps = [(["check", *same], "what theory says of it")]
+    if flight.reason == "completed":
+        steps.append((["run", *same, "--seed", str(flight.seed + 1)], "the same with other noise"))
+    if change := _worthwhile_change(mission):
+        steps.append((["run", *same, "--set", change[0]], change[1]))
+    return [(f"cardume {shlex.join(words)}", why) for words, why in steps]
+
+
+def _worthwhile_change(mission: "Mission") -> tuple[str, str] | None:
+    """A `--set` that this mission has, with a value that shows something."""
+    speed = mission.current.parameters.get("speed")
+    if isinstance(speed, float):
+        return f"current.speed={2 * speed or 0.1:.3g}", "in twice the current" if speed else "in a current"
+    law = mission.vehicles[0].guidance.law
+    for name, value in law.parameters.items():
+        if isinstance(value, float) and value:
+            return f"guidance.{name}={2 * value:.3g}", f"with twice the {name.replace('_', ' ')} of {law.name}"
+    return None
+
+
+def _filled(text: str, width: int, indent: str = "") -> str:
+    room = max(40, min(width, WIDEST_TEXT))
+    return textwrap.fill(
+        text, room, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
+
+
+def _version() -> str:
+    from cardume.cli.version import version
+
+    return version()
