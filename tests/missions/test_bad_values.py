@@ -13,7 +13,8 @@ import pytest
 from cardume.errors import MissionError
 from cardume.missions.mission import Mission
 from cardume.missions.schema import Forms, Group, Quantity, fields_of, records_of
-from cardume.missions.source import Node, parse_yaml
+from cardume.missions.source import parse_yaml
+from cardume.missions.tree import Node
 from cardume.missions.vehicle import SHARED
 from missions.helpers import DESIGN, SMALLEST, parse
 

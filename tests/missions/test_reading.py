@@ -132,6 +132,16 @@ def test_parameters_of_two_families_share_a_section() -> None:
     assert guidance.reference_point.parameters == {"target_gain": 2.0}
 
 
+def test_a_parameter_that_two_laws_of_a_section_have_is_the_later_ones_alone() -> None:
+    """Otherwise a scale would be applied by the sensor and once more by who reads it."""
+    read = mission(sensors={"thruster_speed": {"scale": 1.1}})
+    thruster_speed = read.vehicles[0].sensors.thruster_speed
+    assert thruster_speed is not None
+    assert thruster_speed.law.parameters["scale"] == 1.0
+    assert thruster_speed.reader.parameters["scale"] == 1.1
+    assert parse(read.to_yaml()) == read
+
+
 def test_a_word_alone_names_a_law() -> None:
     read = mission(guidance="arcsine", coordination="none", messaging="none", model={"law": "kinematic"})
     vehicle = read.vehicles[0]

@@ -5,7 +5,8 @@ import pytest
 
 from cardume.errors import MissionError, Position, Problem
 from cardume.missions import load_mission
-from cardume.missions.source import MAX_BYTES, all_positions, parse_yaml, read_text
+from cardume.missions.source import MAX_BYTES, parse_yaml, read_text
+from cardume.missions.tree import all_positions
 from missions.fakes import CATALOG
 from missions.helpers import SMALLEST
 

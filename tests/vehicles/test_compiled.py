@@ -32,21 +32,28 @@ def flight(*compile_laws: Callable[..., Any]) -> Callable[..., None]:
     stores = [f"{name}.{field}" for name, names in fields.items() for field in names]
     source = "\n".join(
         [
-            "def fly(table, wanted, num_steps):",
-            "    rows, asked = rows_of(table), rows_of(wanted)",
+            "def fly(table, references, num_steps):",
+            "    rows, asked = rows_of(table), rows_of(references)",
             "    for step in range(num_steps):",
             f"        v = {records('VesselState', VESSEL, 0)})",
             f"        h = {records('Helm', HELM, VESSEL)})",
             f"        t = {records('Thrusters', RING, VESSEL + HELM)}, at(rows, {RING_AT}))",
             "        surge = read(ShaftReading(v.shaft_speed))",
-            "        f = Feedback(v.heading, v.yaw_rate, surge, v.depth, v.heave, load(asked, 0), load(asked, 1), load(asked, 2))",
+            "        wanted = load(asked, 0), load(asked, 1), load(asked, 2)",
+            "        f = Feedback(v.heading, v.yaw_rate, surge, v.depth, v.heave, wanted[0], wanted[1], wanted[2])",
             "        command, h = steer(f, h, 0.05)",
             "        v, t = move(v, command, Water(load(asked, 3), load(asked, 4)), t, 0.05)",
             *[f"        store(rows, {k}, {value})" for k, value in enumerate(stores)],
         ]
     )
     scope = {
-        **{"rows_of": rows_of, "load": load, "store": store, "at": at, "steer": steer, "move": move, "read": read},
+        "rows_of": rows_of,
+        "load": load,
+        "store": store,
+        "at": at,
+        "steer": steer,
+        "move": move,
+        "read": read,
         **{record.__name__: record for record in (VesselState, Helm, Thrusters, ShaftReading, Feedback, Water)},
     }
     exec(source, scope)
@@ -57,10 +64,9 @@ def missions() -> tuple[np.ndarray, np.ndarray]:
     """(WIDE, WIDTH) tables at the start, and (5, WIDTH) headings, speeds, depths and currents asked for."""
     rng = np.random.default_rng(4)
     table = np.zeros((WIDE, WIDTH))
-    table[: len(VesselState._fields)] = 0.0
     table[4] = rng.uniform(0.0, 0.8, WIDTH)  # surge
     table[3] = rng.uniform(-4.0, 4.0, WIDTH)
-    table[VESSEL + HELM + 6 : RING_AT] = 1.0
+    table[VESSEL + HELM + 6 : RING_AT] = 1.0  # what a plant step does, before the first one
     asked = rng.uniform([-3.0, 0.0, 0.0, -0.2, -0.2], [3.0, 1.0, 20.0, 0.2, 0.2], (WIDTH, 5)).T
     return table, np.ascontiguousarray(asked)
 

@@ -125,8 +125,8 @@ def test_a_doppler_log_is_scaled_and_noisy() -> None:
 
 @given(st.floats(-200.0, 200.0), st.floats(0.5, 2.0), noises)
 def test_shaft_speed_is_scaled_with_noise_in_proportion(speed: float, scale: float, noise: Noise) -> None:
-    reading = thruster_speed(VesselState(shaft_speed=speed), noise, scale, 0.01)
-    assert reading == pytest.approx(speed * (scale + 0.01 * noise.a), rel=1e-15)
+    reading = scale * thruster_speed(VesselState(shaft_speed=speed), noise, 0.01)
+    assert reading == pytest.approx(scale * speed * (1.0 + 0.01 * noise.a), rel=1e-14)
 
 
 # ---- USBL ------------------------------------------------------------------------------------------------------------

@@ -24,7 +24,7 @@ class Progress:
         self._lock = threading.Lock()
         self._timer: threading.Timer | None = None
         self._bar: Any = None
-        self._stage, self._done, self._total = "", 0.0, 0.0
+        self._stage, self._done, self._total = "", 0, 0
 
     def __enter__(self) -> "Progress":
         return self
@@ -32,7 +32,7 @@ class Progress:
     def __exit__(self, _kind: type | None, _error: BaseException | None, _trace: TracebackType | None) -> None:
         self._end_stage()
 
-    def __call__(self, stage: str, done: float, total: float) -> None:
+    def __call__(self, stage: str, done: int, total: int) -> None:
         if not self._is_shown:
             return
         if stage != self._stage:

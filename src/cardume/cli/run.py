@@ -213,7 +213,7 @@ def _worthwhile_change(mission: "Mission") -> tuple[str, str] | None:
     law = mission.vehicles[0].guidance.law
     for name, value in law.parameters.items():
         if isinstance(value, float) and value:
-            return f"guidance.{name}={2 * value:.3g}", f"with twice the {name.replace('_', ' ')} of {law.name}"
+            return f"guidance.{name}={2 * value:.3g}", f"with twice the {name.replace('_', ' ')}"
     return None
 
 

@@ -16,9 +16,14 @@ def _helpers(function: FunctionType) -> dict[str, FunctionType]:
     found = {}
     for name in function.__code__.co_names:
         value = function.__globals__.get(name)
-        if isinstance(value, FunctionType) and not is_compiled(value):
+        if isinstance(value, FunctionType) and not is_compiled(value) and not _is_primitive(value):
             found[name] = value
     return found
+
+
+def _is_primitive(function: FunctionType) -> bool:
+    """Whether compiled code has machine code for a function of this package."""
+    return function.__module__.startswith("cardume.compiler")
 
 
 def is_recursive(function: Any, above: tuple[Any, ...] = ()) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, is_dataclass, replace
 from typing import Any
 
 from cardume.missions.schema import ANY, Bounds, Laws, fields_of
-from cardume.missions.source import join
+from cardume.missions.tree import join
 from cardume.missions.vehicle import LawChoice, Table, Vehicle
 
 

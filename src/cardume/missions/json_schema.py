@@ -27,7 +27,7 @@ from cardume.missions.schema import (
     Word,
     fields_of,
 )
-from cardume.missions.source import SAFE_NAME
+from cardume.missions.tree import SAFE_NAME
 from cardume.missions.varying import SCOPES, WAYS
 from cardume.missions.vehicle import SHARED
 from cardume.units import units_like

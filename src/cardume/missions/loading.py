@@ -15,7 +15,8 @@ from cardume.missions.mission import Mission
 from cardume.missions.overrides import apply_overrides, merge
 from cardume.missions.reading import read, read_record
 from cardume.missions.rules import check_rules
-from cardume.missions.source import Node, all_positions, item_name, label, parse_yaml, read_text
+from cardume.missions.source import parse_yaml, read_text
+from cardume.missions.tree import Node, all_positions, item_name, label
 from cardume.missions.varying import is_varying
 from cardume.missions.vehicle import SHARED
 from cardume.units import printable

@@ -7,7 +7,7 @@ from dataclasses import MISSING
 from cardume.errors import LawError
 from cardume.missions.catalog import Context, Law, Parameter
 from cardume.missions.schema import HUGE, Bounds, Field, File, Kind, Laws, Quantity, Text, fields_of, records_of
-from cardume.missions.source import Node
+from cardume.missions.tree import Node
 from cardume.missions.varying import is_varying
 from cardume.missions.vehicle import LawChoice
 from cardume.missions.wording import unknown

@@ -15,7 +15,8 @@ from cardume.missions.lookup import choose_law, inlined_laws
 from cardume.missions.mission import Mission
 from cardume.missions.reading import as_entries
 from cardume.missions.schema import Forms, Group, Kind, Laws, ListOf, Variant, fields_of, records_of
-from cardume.missions.source import Node, item_name, label, parse_yaml
+from cardume.missions.source import parse_yaml
+from cardume.missions.tree import Node, item_name, label
 from cardume.missions.varying import is_varying
 from cardume.missions.vehicle import SHARED
 from cardume.missions.wording import unknown

@@ -136,15 +136,18 @@ def _current(
         raise mission.error("origin", "a gridded current needs to know where the mission is; give latitude and longitude")
     texts = {key: chosen.parameters.get(key) for key in TEXTS}
     numbers = {key: value for key, value in chosen.parameters.items() if key not in texts}
-    window = Window(origin=origin, start_time=texts["start_time"], duration=mission.duration)
+    window = Window(origin=origin, start_time=texts["start_time"], duration=mission.duration, deepest=max(v.depth for v in mission.vehicles))
+    points = [outline(path, 20.0)[:, 1:] for path in paths]
+    depths = [np.full((len(p), 1), v.depth) for p, v in zip(points, mission.vehicles, strict=True)]
     try:
         field = read_current(texts["file"], window=window, east=texts["east"], north=texts["north"])
+        rows = field.to_rows(origin)
+        uncovered = explain_coverage(field, origin, np.hstack([np.concatenate(points), np.concatenate(depths)]))
     except DataError as problem:
         raise mission.error("current.file", str(problem)) from None
-    points = np.concatenate([outline(path, 20.0)[:, 1:] for path in paths])
-    if problem := explain_coverage(field, origin, points):
-        raise mission.error("current.file", problem)
-    return Choice(laws_of("current")["gridded"], numbers), field.to_rows(origin)
+    if uncovered:
+        raise mission.error("current.file", uncovered)
+    return Choice(laws_of("current")["gridded"], numbers), rows
 
 
 def _choice(chosen: LawChoice, catalog: Catalog) -> Choice:

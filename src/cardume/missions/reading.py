@@ -2,39 +2,31 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import MISSING
 from functools import singledispatch
-from pathlib import Path
 from typing import Any
 
-from cardume.errors import Collector, MissionError, Position, Problem, UnitError
+from cardume.errors import Collector, MissionError, Position, Problem
 from cardume.missions.catalog import Context
 from cardume.missions.lookup import Chosen, choose_law, inlined_laws
 from cardume.missions.schema import (
     Field,
-    File,
     Forms,
-    Graph,
     Group,
     Kind,
     Laws,
     ListOf,
-    Name,
     Quantity,
     Requirements,
-    Text,
     Variant,
-    Whole,
-    Word,
     fields_of,
 )
-from cardume.missions.source import SAFE_NAME, Node, join, nearest_file
+from cardume.missions.tree import Node, join
 from cardume.missions.varying import is_varying, read_varying
 from cardume.missions.vehicle import LawChoice, Table
 from cardume.missions.wording import keys_of, unknown, wanted
-from cardume.units import parse_quantity, show_text
+from cardume.units import show_text
 
 
 def read(kind: Kind, node: Node, context: Context) -> Any:
@@ -64,92 +56,13 @@ def plant(value: Any, position: Position) -> Node:
 
 @singledispatch
 def _read(kind: Kind, node: Node, context: Context) -> Any:
-    raise TypeError(kind)
-
-
-def _refuse(kind: Kind, node: Node) -> Exception:
-    return node.error(f"given {node.given()}; must be {wanted(kind)}")
-
-
-@_read.register
-def _quantity(kind: Quantity, node: Node, _context: Context) -> float:
-    if isinstance(node.value, bool) or not isinstance(node.value, (int, float, str)):
-        raise _refuse(kind, node)
-    try:
-        value = parse_quantity(node.value, kind.unit)
-    except UnitError as problem:
-        raise node.error(str(problem)) from None
-    if not kind.bounds.contain(value):
-        raise _refuse(kind, node)
-    return value
-
-
-@_read.register
-def _whole(kind: Whole, node: Node, _context: Context) -> int:
-    if isinstance(node.value, bool) or not isinstance(node.value, int) or not kind.low <= node.value <= kind.high:
-        raise _refuse(kind, node)
-    return node.value
-
-
-@_read.register
-def _word(kind: Word, node: Node, _context: Context) -> str:
-    if not isinstance(node.value, str) or node.value not in kind.choices:
-        raise node.error(unknown(f"given {node.given()}", str(node.value), list(kind.choices)))
-    return node.value
-
-
-@_read.register
-def _name(kind: Name, node: Node, _context: Context) -> str:
-    if not isinstance(node.value, str) or not SAFE_NAME.fullmatch(node.value):
-        raise _refuse(kind, node)
-    return node.value
-
-
-@_read.register
-def _text(kind: Text, node: Node, _context: Context) -> str:
-    if not isinstance(node.value, str) or not node.value.isprintable() or not 0 < len(node.value) <= 200:
-        raise _refuse(kind, node)
-    return node.value
-
-
-@_read.register
-def _file(kind: File, node: Node, context: Context) -> str:
-    if not isinstance(node.value, str) or not node.value.isprintable() or not node.value:
-        raise _refuse(kind, node)
-    path = Path(os.path.abspath(context.directory / node.value))
-    try:
-        is_file, is_there = path.is_file(), path.exists()
-    except OSError as problem:
-        raise node.error(f"{node.given()} cannot be read: {problem.strerror}") from None
-    if not is_there:
-        raise node.error(f"no such file: {node.given()}{nearest_file(path)}; must be {wanted(kind)}")
-    if not is_file:
-        raise node.error(f"{node.given()} is not a regular file; must be {wanted(kind)}")
-    return str(path)
-
-
-@_read.register
-def _graph(kind: Graph, node: Node, context: Context) -> str | tuple[tuple[float, ...], ...]:
-    if isinstance(node.value, str) and node.value not in kind.names:
-        raise node.error(unknown(f"given {node.given()}", node.value, list(kind.names)))
-    if isinstance(node.value, str):
-        return node.value
-    size = len(context.fleet)
-    rows = [row.value for row in node.value] if isinstance(node.value, list) else []
-    if len(rows) != size or not all(isinstance(row, list) and len(row) == size for row in rows):
-        raise node.error(f"given {node.given()}; must be {wanted(kind)}: here {size} x {size}")
-    weight = Quantity("", kind.weights)
-    matrix = tuple(tuple(_quantity(weight, item, context) for item in row) for row in rows)
-    for index in range(size):
-        if matrix[index][index]:
-            raise rows[index][index].error("a vehicle does not listen to itself; the diagonal must be 0")
-    return matrix
+    return read_value(kind, node, context)
 
 
 @_read.register
 def _requirements(kind: Requirements, node: Node, context: Context) -> tuple[Any, ...]:
     if not isinstance(node.value, dict):
-        raise _refuse(kind, node)
+        raise refused(kind, node)
     found, collector, metrics = [], Collector(), context.catalog.metrics
     for key, item in node.value.items():
         of_vehicle = isinstance(item.value, dict)
@@ -170,7 +83,7 @@ def _requirements(kind: Requirements, node: Node, context: Context) -> tuple[Any
 @_read.register
 def _list(kind: ListOf, node: Node, context: Context) -> tuple[Any, ...]:
     if not isinstance(node.value, list) or not node.value:
-        raise _refuse(kind, node)
+        raise refused(kind, node)
     collector, items = Collector(), []
     for item in node.value:
         with collector:
@@ -235,7 +148,7 @@ def as_entries(kind: Kind, node: Node) -> dict[str, Node]:
         return dict(node.value)
     laws = inlined_laws(kind)
     if not laws or not isinstance(node.value, str):
-        raise _refuse(kind, node)
+        raise refused(kind, node)
     return {laws[0].selector: node}
 
 
@@ -266,11 +179,18 @@ def read_record(
         for field in fields:
             with collector:
                 if field.key in chosen:
-                    values[field.key] = _choice(chosen[field.key], entries, section, context)
+                    values[field.key] = _choice(chosen[field.key], _owned(field.key, chosen, entries), section, context)
                 else:
                     values[field.key] = _field(field, entries, section, context, values)
     collector.finish()
     return record(**values)
+
+
+def _owned(key: str, chosen: dict[str, Chosen], entries: dict[str, Node]) -> dict[str, Node]:
+    """What a section says to one of its laws: a parameter that two of them have is the later one's alone."""
+    later = list(chosen)[list(chosen).index(key) + 1 :]
+    taken = set[str]().union(*(chosen[name].keys for name in later))
+    return {name: node for name, node in entries.items() if name not in taken}
 
 
 def _choice(chosen: Chosen, entries: dict[str, Node], section: Node, context: Context) -> LawChoice:

@@ -8,7 +8,7 @@ from typing import Any
 from cardume.errors import Collector
 from cardume.missions.distributions import Choose, Normal, Sweep, Uniform, varying_values
 from cardume.missions.schema import NOT_NEGATIVE, Kind, Quantity, Whole
-from cardume.missions.source import Node
+from cardume.missions.tree import Node
 from cardume.missions.vehicle import SHARED
 
 WAYS = ("uniform", "normal", "choose", "sweep", "linspace")

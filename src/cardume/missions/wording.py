@@ -29,7 +29,11 @@ from cardume.units import format_quantity, nearest
 
 @singledispatch
 def wanted(kind: Kind) -> str:
-    """What is valid here, to follow `must be`."""
+    """What is valid here, to follow `must be`.
+
+    Raises:
+        TypeError: no such kind.
+    """
     raise TypeError(kind)
 
 

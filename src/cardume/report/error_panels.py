@@ -13,7 +13,7 @@ WIDTH = 7.2  # [inch]
 PANEL, TOP, BOTTOM, LEFT, RIGHT = 1.15, 0.25, 0.45, 0.75, 0.15  # [inch]
 GAP = 0.24  # [inch] between panels
 ROOMY = 5.5  # [inch] width at which two notes fit above a panel
-CLIPPED = 3.0  # a transient this much larger than what follows runs out of its panel
+CLIPPED = 2.0  # a transient this much larger than what follows runs out of its panel
 
 
 class Panel(NamedTuple):

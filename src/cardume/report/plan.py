@@ -102,9 +102,7 @@ def _draw_tracks(axes: Any, flight: Flight) -> None:
 
 def _draw_instants(axes: Any, flight: Flight, size: float) -> None:
     """The fleet at a few instants, each vehicle a small hull, joined by a thin line."""
-    if len(flight.times) < 2:
-        return
-    for row in np.linspace(0, len(flight.times) - 1, INSTANTS + 1).astype(int)[1:]:
+    for row in _instants(flight.times):
         north, east = flight.channels["north"][row], flight.channels["east"][row]
         if not np.isfinite([north, east]).all():
             continue
@@ -113,7 +111,18 @@ def _draw_instants(axes: Any, flight: Flight, size: float) -> None:
         for k, heading in enumerate(flight.channels["heading"][row]):
             hull = _hull(north[k], east[k], heading, size)
             axes.fill(hull[:, 1], hull[:, 0], fc=style.color(k), ec="white", lw=0.5, zorder=6)
-        _label(axes, f"{flight.times[row]:.0f} s", north, east, flight.channels["path_course"][row, 0], order)
+        _label(axes, f"{flight.times[row]:.4g} s", north, east, flight.channels["path_course"][row, 0], order)
+
+
+def _instants(times: np.ndarray) -> list[int]:
+    """Rows at a few round times, and the last row."""
+    if len(times) < 2 or times[-1] <= 0.0:
+        return []
+    rough = times[-1] / INSTANTS
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = power * next(nice for nice in (1.0, 1.5, 2.0, 3.0, 5.0, 7.5, 10.0) if nice * power >= 0.999 * rough)
+    round_times = np.arange(step, times[-1] - 0.4 * step, step)
+    return [*np.searchsorted(times, round_times - 1e-9).tolist(), len(times) - 1]
 
 
 def _label(axes: Any, text: str, north: np.ndarray, east: np.ndarray, course: float, order: np.ndarray) -> None:

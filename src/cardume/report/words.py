@@ -99,16 +99,16 @@ def _cause(flight: Flight) -> Iterator[str]:
         return
     rows = flight.times >= flight.metrics.vehicles[name].get("settling_time", math.nan)
     place = flight.vehicle_names.index(name)
-    true, believed = (_rms(flight.channels[c][rows, place]) for c in ("cross_track", "cross_track_estimate"))
-    if not true > NOTICEABLE or math.isnan(believed):
+    true, believed = (flight.channels[c][rows, place] for c in ("cross_track", "cross_track_estimate"))
+    misjudged = _rms(believed - true)
+    if not _rms(true) > NOTICEABLE or math.isnan(misjudged):
         return
     who = "It" if len(flight.vehicle_names) == 1 else f"{name}, the worst,"
-    if believed < 0.6 * true:
-        yield f"{who} believed itself closer ({number(believed)} m rms): knowing where it is limits it, not steering."
-    elif believed > 1.6 * true:
-        yield f"{who} believed itself further off ({number(believed)} m rms): its position estimate is noisy."
+    if misjudged > 0.6 * _rms(true):
+        yield f"{who} misjudged its error by {number(misjudged)} m rms: knowing where it is limits it, not steering."
     else:
-        yield f"{who} knew it ({number(believed)} m rms believed): steering limits it as much as navigation."
+        how_well = f"to {number(misjudged)} m rms" if misjudged >= 1e-3 else "exactly"
+        yield f"{who} knew its error {how_well}: steering limits it, not knowing where it is."
 
 
 def _rms(values: np.ndarray) -> float:

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from cardume.compiler import compiled, some
 from cardume.signals import Noise
-from cardume.world.currents.gauss_markov import gauss_markov
+from cardume.maths.gauss_markov import gauss_markov
 
 __all__ = ["Variation", "vary"]
 

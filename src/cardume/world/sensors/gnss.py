@@ -5,7 +5,7 @@ from typing import NamedTuple
 from cardume.compiler import some, where
 from cardume.laws import Meters, NotNegative, Positive, Seconds
 from cardume.signals import NOTHING, GnssReading, Noise, Sampling, VesselState
-from cardume.world.currents.gauss_markov import gauss_markov
+from cardume.maths.gauss_markov import gauss_markov
 from cardume.world.sensors.base import gnss_sensor
 
 

@@ -1,0 +1,107 @@
+"""Single values of a file: quantities, words, names, files, graphs."""
+
+from __future__ import annotations
+
+import os
+from functools import singledispatch
+from pathlib import Path
+from typing import Any
+
+from cardume.errors import MissionError, UnitError
+from cardume.missions.catalog import Context
+from cardume.missions.schema import File, Graph, Kind, Name, Quantity, Text, Whole, Word
+from cardume.missions.source import nearest_file
+from cardume.missions.tree import SAFE_NAME, Node
+from cardume.missions.wording import unknown, wanted
+from cardume.units import parse_quantity
+
+
+def refused(kind: Kind, node: Node) -> MissionError:
+    """The error that a node is not what its kind wants, to raise."""
+    return node.error(f"given {node.given()}; must be {wanted(kind)}")
+
+
+@singledispatch
+def read_value(kind: Kind, node: Node, context: Context) -> Any:
+    """The value of a node that is no section.
+
+    Raises:
+        MissionError: not such a value.
+        TypeError: no such kind.
+    """
+    raise TypeError(kind)
+
+
+@read_value.register
+def _quantity(kind: Quantity, node: Node, _context: Context) -> float:
+    if isinstance(node.value, bool) or not isinstance(node.value, (int, float, str)):
+        raise refused(kind, node)
+    try:
+        value = parse_quantity(node.value, kind.unit)
+    except UnitError as problem:
+        raise node.error(str(problem)) from None
+    if not kind.bounds.contain(value):
+        raise refused(kind, node)
+    return value
+
+
+@read_value.register
+def _whole(kind: Whole, node: Node, _context: Context) -> int:
+    if isinstance(node.value, bool) or not isinstance(node.value, int) or not kind.low <= node.value <= kind.high:
+        raise refused(kind, node)
+    return node.value
+
+
+@read_value.register
+def _word(kind: Word, node: Node, _context: Context) -> str:
+    if not isinstance(node.value, str) or node.value not in kind.choices:
+        raise node.error(unknown(f"given {node.given()}", str(node.value), list(kind.choices)))
+    return node.value
+
+
+@read_value.register
+def _name(kind: Name, node: Node, _context: Context) -> str:
+    if not isinstance(node.value, str) or not SAFE_NAME.fullmatch(node.value):
+        raise refused(kind, node)
+    return node.value
+
+
+@read_value.register
+def _text(kind: Text, node: Node, _context: Context) -> str:
+    if not isinstance(node.value, str) or not node.value.isprintable() or not 0 < len(node.value) <= 200:
+        raise refused(kind, node)
+    return node.value
+
+
+@read_value.register
+def _file(kind: File, node: Node, context: Context) -> str:
+    if not isinstance(node.value, str) or not node.value.isprintable() or not node.value:
+        raise refused(kind, node)
+    path = Path(os.path.abspath(context.directory / node.value))
+    try:
+        is_file, is_there = path.is_file(), path.exists()
+    except OSError as problem:
+        raise node.error(f"{node.given()} cannot be read: {problem.strerror}") from None
+    if not is_there:
+        raise node.error(f"no such file: {node.given()}{nearest_file(path)}; must be {wanted(kind)}")
+    if not is_file:
+        raise node.error(f"{node.given()} is not a regular file; must be {wanted(kind)}")
+    return str(path)
+
+
+@read_value.register
+def _graph(kind: Graph, node: Node, context: Context) -> str | tuple[tuple[float, ...], ...]:
+    if isinstance(node.value, str) and node.value not in kind.names:
+        raise node.error(unknown(f"given {node.given()}", node.value, list(kind.names)))
+    if isinstance(node.value, str):
+        return node.value
+    size = len(context.fleet)
+    rows = [row.value for row in node.value] if isinstance(node.value, list) else []
+    if len(rows) != size or not all(isinstance(row, list) and len(row) == size for row in rows):
+        raise node.error(f"given {node.given()}; must be {wanted(kind)}: here {size} x {size}")
+    weight = Quantity("", kind.weights)
+    matrix = tuple(tuple(_quantity(weight, item, context) for item in row) for row in rows)
+    for index in range(size):
+        if matrix[index][index]:
+            raise rows[index][index].error("a vehicle does not listen to itself; the diagonal must be 0")
+    return matrix

@@ -1,0 +1,1 @@
+"""What nature and devices do: currents, sensors, acoustics; it never sees a controller."""
