@@ -17,7 +17,17 @@ from typing import Annotated, Any, NamedTuple, TypeVar
 import numpy as np
 
 from cardume.compiler import Rows, SharedRows, at, load, store
-from cardume.compiler.calls import address, call_python, define_verb, law_answer, law_signature, record_type
+from cardume.compiler.calls import (
+    FLAT,
+    STRIDED,
+    WIDE,
+    address,
+    call_python,
+    define_verb,
+    law_answer,
+    law_signature,
+    record_type,
+)
 from cardume.compiler.compiled import cached, source_stamp
 from cardume.compiler.reach import fingerprint, is_recursive, with_compiled_helpers
 from cardume.errors import LawError
@@ -308,23 +318,23 @@ class Law:
         if lanes not in self._handles:
             if not self.is_builtin and not self._handles:
                 self._try_once()
-            self._handles[lanes] = self._compile_lanes() if lanes else self._compile(lanes=False)
+            self._handles[lanes] = self._compile_lanes() if lanes else self._compile(FLAT)
         return self._handles[lanes]
 
     def _compile_lanes(self) -> int:
         from numba.core.errors import NumbaError  # costs a tenth of a second; only batches need it
 
         try:
-            return self._compile(lanes=True)
+            return self._compile(WIDE)
         except (NumbaError, LawError):
-            return -self.handle()
+            return -self._compile(STRIDED)
 
-    def _compile(self, lanes: bool) -> int:
+    def _compile(self, rows: Any) -> int:
         from numba.core.errors import NumbaError
 
-        signature = law_signature(self._family.signals, self._family.result, lanes)
+        signature = law_signature(self._family.signals, self._family.result, rows)
         try:
-            wrapper = cached(self._wrapper(lanes), signature, keep=not is_recursive(self.function))
+            wrapper = cached(self._wrapper(rows), signature, keep=not is_recursive(self.function))
         except NumbaError as problem:
             raise LawError(
                 f"{self.family} law '{self.name}' does not compile: {_last_words(problem)}\n"
@@ -333,7 +343,7 @@ class Law:
         self._kept.append(wrapper)
         return address(wrapper, signature)
 
-    def _wrapper(self, lanes: bool) -> Any:
+    def _wrapper(self, rows: Any) -> Any:
         """Write law(*signals, gains, memory, dt) around the function, named after what it is made of."""
         slots, stores, first = [], [], 0
         for field, start in zip(self.memory_type._fields, self.memory_type(), strict=True) if self.memory_type else ():
@@ -350,7 +360,7 @@ class Law:
         signals = ", ".join(f"signal_{k}" for k in range(len(self._family.signals)))
         body = "\n".join([call, *stores, "    return as_answer(memory, answer)"])
         made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function))
-        name = f"{self.family}_{self.name}_{made_of}_{'lanes' if lanes else 'scalar'}"
+        name = f"{self.family}_{self.name}_{made_of}_{rows.name}"
         scope = {"__name__": __name__, "law": with_compiled_helpers(self.function), "Memory": self.memory_type}
         scope |= {"load": load, "store": store, "at": at, "as_answer": law_answer(self._family.result)}
         exec(compile(f"def {name}({signals}, gains, memory, dt):\n{body}", __file__, "exec"), scope)
@@ -382,9 +392,7 @@ class Law:
             )
 
     def _sample_call(self) -> Any:
-        samples: dict[str, Any] = {
-            f"signal_{k}": _sample(kind) for k, kind in enumerate(self._family.signals)
-        }
+        samples: dict[str, Any] = {f"signal_{k}": _sample(kind) for k, kind in enumerate(self._family.signals)}
         samples |= {"dt": 0.1, "memory": self.memory_type() if self.memory_type else None}
         defaults = iter(p.default for p in self.parameters)
         return self.function(*[samples[g] if g in samples else next(defaults) for g in self._given])

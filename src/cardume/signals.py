@@ -26,7 +26,7 @@ class VesselState(NamedTuple):
     sway: float = 0.0  # [m/s] through the water, body, to starboard
     heave: float = 0.0  # [m/s] through the water, body, down
     yaw_rate: float = 0.0  # [rad/s]
-    shaft_speed: float = 0.0  # [rad/s] mean of the horizontal thrusters; `kinematic`: its surge [m/s]
+    shaft_speed: float = 0.0  # [rad/s] at which both horizontal thrusters alike push as much; `kinematic`: surge [m/s]
     thrust: float = 0.0  # [N] forward, as delivered
     yaw_moment: float = 0.0  # [N m] as delivered
     power: float = 0.0  # [W] useful power of the thrusters
@@ -148,6 +148,8 @@ class Motion(NamedTuple):
     yaw_rate: float  # [rad/s]
     surge: float  # [m/s] through the water
     sway: float  # [m/s] through the water
+    north: float  # [m/s] through the water: surge and sway, turned
+    east: float  # [m/s]
     current_north: float  # [m/s] estimate
     current_east: float  # [m/s] estimate
 
@@ -207,7 +209,6 @@ class Feedback(NamedTuple):
     yaw_rate: float = 0.0  # [rad/s] measured
     surge: float = 0.0  # [m/s] through the water, measured
     depth: float = 0.0  # [m] measured
-    heave: float = 0.0  # [m/s] down, from the measured depth
     reference_heading: float = 0.0  # [rad]
     reference_speed: float = 0.0  # [m/s]
     reference_depth: float = 0.0  # [m]

@@ -87,12 +87,14 @@ def parse_quantity(given: float | str, unit: str) -> float:
         return value
     wanted = UNITS.get(unit, Unit(1.0, unit))
     if given_unit not in UNITS:
-        raise UnitError(f"'{given_unit}' is not a unit{_hint(given_unit, unit)}; valid here: {_valid(unit)}")
+        raise UnitError(
+            f"{show_text(given_unit)} is not a unit{_hint(given_unit, unit) or '.'} Valid here: {_valid(unit)}"
+        )
     found = UNITS[given_unit]
     if found.dimension != wanted.dimension:
         what = f"{show_text(given)} is given in a unit of {found.dimension}, but one of {wanted.dimension} is needed"
         raise UnitError(f"{what}; valid here: {_valid(unit)}")
-    return _finite(value * found.factor)
+    return _finite(value * found.factor / wanted.factor)
 
 
 def format_quantity(value: float, unit: str) -> str | float:
@@ -105,7 +107,7 @@ def format_quantity(value: float, unit: str) -> str | float:
     if not unit:
         return value
     shown = SHOWN_IN.get(unit, unit)
-    scaled = value / UNITS[shown].factor if shown in UNITS else value
+    scaled = value / UNITS[shown].factor if shown != unit else value
     texts = (f"{scaled:.12g} {shown}", f"{value!r} {unit}", f"{value:.12g} {unit}")
     return min((text for text in texts if parse_quantity(text, unit) == value), key=len)
 
@@ -119,7 +121,7 @@ def show_quantity(value: float, unit: str, digits: int = 4) -> str:
         digits: significant digits.
     """
     shown = SHOWN_IN.get(unit, unit)
-    scaled = value / UNITS[shown].factor if shown in UNITS else value
+    scaled = value / UNITS[shown].factor if shown != unit else value
     return f"{scaled:.{digits}g} {shown}".rstrip()
 
 
@@ -143,7 +145,7 @@ def printable(text: str) -> str:
 def nearest(word: str, valid: list[str]) -> str:
     """`. Did you mean 'x'?` for the valid word most like `word`, or nothing."""
     lowered = {name.lower(): name for name in reversed(valid)}
-    close = difflib.get_close_matches(word.lower()[:80], lowered, n=1, cutoff=0.6)
+    close = difflib.get_close_matches(word.lower()[:80], lowered, n=1, cutoff=0.7)
     return f". Did you mean '{lowered[close[0]]}'?" if close else ""
 
 

@@ -99,7 +99,11 @@ def test_distributions_have_their_mean_spread_and_bounds() -> None:
     assert statistics.fmean(towards) == pytest.approx(1.0, abs=4 * 0.2 / math.sqrt(1000))
     assert statistics.stdev(towards) == pytest.approx(0.2, rel=4 / math.sqrt(2 * 1000))
     assert 0.0 <= min(losses) < 0.01  # cut off at the bounds of a probability, not piled up there
-    assert sum(loss == 0.0 for loss in losses) == 0
+    normal = statistics.NormalDist()
+    inside = normal.cdf(4.5) - normal.cdf(-0.5)
+    mean = 0.1 + 0.2 * (normal.pdf(-0.5) - normal.pdf(4.5)) / inside
+    assert statistics.fmean(losses) == pytest.approx(mean, abs=4 * 0.2 / math.sqrt(1000))
+    assert len(set(losses)) == 1000
     for delay in (1.0, 2.0, 4.0):
         assert delays.count(delay) == pytest.approx(1000 / 3, abs=4 * math.sqrt(1000 * 2 / 9))
     assert abs(statistics.correlation(speeds, towards)) < 4 / math.sqrt(1000)
@@ -166,7 +170,7 @@ REFUSED = {
     "per": ({"uniform": [1, 2], "per": "fleet"}, "must be one of mission, vehicle"),
     "nested": ({"choose": [{"uniform": [1, 2]}, 3]}, "stands inside one that varies"),
     "nothing": ({"choose": [1, None]}, "no value is given"),
-    "misspelt": ({"unifrom": [1, 2]}, "must be a number"),
+    "misspelt": ({"unifrm": [1, 2]}, "must be a number"),
 }
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cardume.missions import LawChoice, Mission, load_mission
+from cardume.missions import LawChoice, load_mission
 from cardume.missions.mission import Formation, Origin, Requirement, Transient
 from cardume.missions.route import (
     ArcPath,
@@ -22,7 +22,7 @@ from cardume.missions.route import (
 )
 from cardume.missions.vehicle import AbsoluteStart, Offset, RelativeStart, Sensors
 from missions.fakes import CATALOG
-from missions.helpers import DESIGN, SMALLEST, mission, parse, refused, refused_mission
+from missions.helpers import DESIGN, SMALLEST, mission, parse, refused, refused_mission, tree
 
 DEG = math.pi / 180.0
 
@@ -163,12 +163,7 @@ def test_default_sensors_are_those_of_the_model_and_the_depth() -> None:
     carried = [[kind for kind in ("gnss", "ahrs", "depth", "usbl") if getattr(v.sensors, kind)] for v in read.vehicles]
     assert carried == [["gnss", "ahrs", "usbl"], ["ahrs", "depth"], ["ahrs"]]
     ideal = replace(CATALOG, default_sensors=lambda model, submerged: "ideal")
-    assert parse(json.dumps({**json.loads(json.dumps(tree_of(read)))}), catalog=ideal).vehicles[0].sensors.ideal
-
-
-def tree_of(read: Mission) -> dict[str, object]:
-    return {"cardume": 1, "name": read.name, "duration": 60, "path": {"type": "line", "length": 9},
-            "formation": {"speed": 1}, "vehicles": [{"name": "up"}]}  # fmt: skip
+    assert parse(json.dumps(tree()), catalog=ideal).vehicles[0].sensors.ideal
 
 
 def test_users_laws_bring_their_own_parameters() -> None:
@@ -247,15 +242,9 @@ def test_what_recurs_does_so_every_so_many_ticks() -> None:
         ({"messaging": {"period": 0.55}}, "messaging.period", "the nearest are 0.5 s and 0.6 s"),
         ({"log_period": 0.1, "duration": "480 h"}, "log_period", "rows"),
     ):
-        found = refused(json.dumps({**json.loads(json.dumps(tree_with(sections)))}))
+        found = refused(json.dumps({**tree(), **sections}))
         assert found[0].position.key == key
         assert words in found[0].message
-
-
-def tree_with(sections: dict[str, object]) -> dict[str, object]:
-    from missions.helpers import tree
-
-    return {**tree(), **sections}
 
 
 def test_the_fleet_has_one_graph_and_one_channel() -> None:

@@ -79,7 +79,7 @@ def test_users_laws_and_odd_texts_survive() -> None:
 
 
 BAD: list[dict[str, Any]] = [
-    {"nam": 1},
+    {"nme": 1},
     {"path": {"type": "spiral"}},
     {"seed": -1},
     {"vehicles": []},

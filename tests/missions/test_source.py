@@ -101,7 +101,7 @@ def load_text(text: str) -> None:
 FILES = {
     "empty": (b"", "empty"),
     "binary": (b"\x89PNG\r\n\x1a\n\x00\x00", "is a binary file"),
-    "latin": ("name: caf\xe9\n".encode("latin-1"), "not UTF-8"),
+    "latin": ("name: mar\xe9\n".encode("latin-1"), "not UTF-8"),
     "utf16": ("cardume: 1\n".encode("utf-16"), "UTF-16"),
     "utf16-no-mark": ("cardume: 1\n".encode("utf-16-le"), "U+0000"),
     "gzip": (b"\x1f\x8b\x08\x00\x00\x00", "is a binary file"),
@@ -125,7 +125,7 @@ def test_a_path_that_is_no_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "mission.yaml").write_text(SMALLEST)
     os.mkfifo(tmp_path / "pipe")
     for path, words in {
-        tmp_path / "misson.yaml": f"Did you mean '{tmp_path}/mission.yaml'?",
+        tmp_path / "mssion.yaml": f"Did you mean '{tmp_path}/mission.yaml'?",
         tmp_path / "nowhere" / "m.yaml": "its folder",
         tmp_path: "is a directory",
         tmp_path / "pipe": "not a regular file",

@@ -28,6 +28,7 @@ EXACT = [
     ("3 N m", "N m", 3.0),
     ("7 N", "N", 7.0),
     ("20 %", "", 0.2),
+    ("20 %", "%", 20.0),
     ("+.5", "", 0.5),
     ("3 dB", "dB", 3.0),
     (4, "m", 4.0),
@@ -52,6 +53,7 @@ REFUSED = [
     ("5 KM", "m", "Did you mean 'km'?"),
     ("90 °", "rad", "Did you mean 'deg'?"),
     ("5 furlongs", "m", "m, km, ft, NM"),
+    ("5 \ue000", "m", r"'\ue000' is not a unit"),
     ("5,5 m", "m", "the decimal sign is a point"),
     ("fast", "m/s", "not a number"),
     ("", "m", "not a number"),
@@ -94,6 +96,7 @@ def test_written_and_shown_quantities_look_as_people_write_them() -> None:
     assert show_quantity(0.123456, "m") == "0.1235 m"
     assert show_quantity(math.nan, "m") == "nan m"
     assert show_quantity(2.0, "") == "2"
+    assert (show_quantity(90.0, "%"), format_quantity(90.0, "%")) == ("90 %", "90 %")
 
 
 def test_what_was_given_is_shown_short_and_printable() -> None:

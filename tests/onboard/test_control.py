@@ -59,7 +59,7 @@ def fly(
         surge += noise * rng.standard_normal()
         for step in range(SUBSTEPS):
             heading = seen.heading + step * dt * seen.yaw_rate
-            feedback = Feedback(heading, seen.yaw_rate, surge, seen.depth, 0.0, *now)
+            feedback = Feedback(heading, seen.yaw_rate, surge, seen.depth, *now)
             command, helm = feedforward_pid(feedback, helm, dt, **(pilot or {}))
             vessel, thrusters = medusa(vessel, command, Water(0.1, 0.1), thrusters, dt, **(plant or {}))
             time = tick * TICK + (step + 1) * dt
@@ -180,25 +180,25 @@ def test_at_the_surface_it_stays_there() -> None:
 
 def test_readings_that_are_missing_count_as_no_error() -> None:
     nothing = math.nan
-    command, helm = feedforward_pid(Feedback(nothing, nothing, nothing, nothing, 0.0, 0.3, 0.5, 2.0), Helm(), 0.05)
+    command, helm = feedforward_pid(Feedback(nothing, nothing, nothing, nothing, 0.3, 0.5, 2.0), Helm(), 0.05)
     assert np.isfinite([*command, *helm]).all()
     assert (command.yaw_moment, command.heave_force) == (0.0, 0.0)
     assert command.thrust > 0.0
 
 
 def test_the_limits_hold() -> None:
-    command, _ = feedforward_pid(Feedback(0.0, 0.0, 0.0, 0.0, 0.0, 3.0, 9.0, 90.0), Helm(), 0.05, heading_gain=50.0)
+    command, _ = feedforward_pid(Feedback(0.0, 0.0, 0.0, 0.0, 3.0, 9.0, 90.0), Helm(), 0.05, heading_gain=50.0)
     assert command.yaw_moment == pytest.approx(10.8, abs=1e-3)
     assert command.heave_force < 72.001
     assert abs(command.thrust) < 72.001
 
 
 def test_mirrored_readings_give_mirrored_moments() -> None:
-    one, helm = feedforward_pid(Feedback(0.1, 0.05, 0.5, 1.0, 0.0, 0.4, 0.6, 2.0), Helm(), 0.05)
-    other, mirrored = feedforward_pid(Feedback(-0.1, -0.05, 0.5, 1.0, 0.0, -0.4, 0.6, 2.0), Helm(), 0.05)
+    one, helm = feedforward_pid(Feedback(0.1, 0.05, 0.5, 1.0, 0.4, 0.6, 2.0), Helm(), 0.05)
+    other, mirrored = feedforward_pid(Feedback(-0.1, -0.05, 0.5, 1.0, -0.4, 0.6, 2.0), Helm(), 0.05)
     assert other == (one.thrust, -one.yaw_moment, one.heave_force)
-    one, _ = feedforward_pid(Feedback(0.12, 0.06, 0.5, 1.0, 0.0, 0.42, 0.6, 2.0), helm, 0.05)
-    other, _ = feedforward_pid(Feedback(-0.12, -0.06, 0.5, 1.0, 0.0, -0.42, 0.6, 2.0), mirrored, 0.05)
+    one, _ = feedforward_pid(Feedback(0.12, 0.06, 0.5, 1.0, 0.42, 0.6, 2.0), helm, 0.05)
+    other, _ = feedforward_pid(Feedback(-0.12, -0.06, 0.5, 1.0, -0.42, 0.6, 2.0), mirrored, 0.05)
     assert other == (one.thrust, -one.yaw_moment, one.heave_force)
 
 
@@ -212,4 +212,4 @@ def test_the_turn_filter_follows_a_ramp_and_ignores_a_jump() -> None:
 
 
 def test_no_autopilot_asks_for_nothing() -> None:
-    assert none(Feedback(1.0, 0.2, 0.5, 3.0, 0.1, 0.0, 1.0, 5.0)) == Command(0.0, 0.0, 0.0)
+    assert none(Feedback(1.0, 0.2, 0.5, 3.0, 0.0, 1.0, 5.0)) == Command(0.0, 0.0, 0.0)

@@ -18,6 +18,7 @@ from cardume.missions.log import MESSAGES, PATHS, VARIABLES, read_log, write_log
 from cardume.simulation.flight import CHANNELS, MESSAGE_COLUMNS, Flight
 from report.synthetic import make_flight
 
+SOME_UNITS = {"north": "m", "yaw_rate": "rad/s", "curvature": "1/m", "yaw_moment": "N m", "shaft_speed_rpm": "rpm"}
 MISSION = "cardume: 1\nname: figure-5  # São Jacinto\n"
 
 
@@ -37,6 +38,7 @@ def test_every_number_comes_back_as_it_was(log: Path, flight: Flight) -> None:
     assert (mission, version) == (MISSION, "0.1.0")
     assert set(back.channels) == set(CHANNELS)
     for name in CHANNELS:
+        assert type(back.channels[name]) is np.ndarray  # not masked
         assert back.channels[name].tobytes() == np.ascontiguousarray(flight.channels[name], "f8").tobytes(), name
     for name in MESSAGE_COLUMNS:
         np.testing.assert_array_equal(back.messages[name], flight.messages[name])
@@ -84,6 +86,9 @@ def test_xarray_opens_it_and_everything_says_what_it_is(log: Path, flight: Fligh
         for name, variable in data.variables.items():
             assert variable.attrs["units"] == VARIABLES[str(name)].units, name
             assert variable.attrs["long_name"], name
+        assert {name: data[name].units for name in SOME_UNITS} == SOME_UNITS
+        assert np.isnan(data.north.encoding["_FillValue"])
+        assert "_FillValue" not in data.time.encoding
         assert data.north.dims == ("time", "vehicle")
         assert data.neighbor_state_estimate.dims == ("time", "vehicle", "neighbor")
         assert data.time.dtype == np.float64  # seconds, not made into dates
@@ -112,6 +117,16 @@ def test_a_large_seed_and_a_mission_longer_than_an_attribute_of_hdf5(tmp_path: P
     back = read_log(tmp_path / "log.nc")
     assert back.flight.seed == 2**63 - 1
     assert back.mission == mission
+
+
+def test_a_fleet_of_thousands_can_be_addressed(tmp_path: Path, flight: Flight) -> None:
+    messages = {
+        **flight.messages,
+        **dict.fromkeys(("sender", "receiver"), np.full(len(flight.messages["lost"]), 70_000)),
+    }
+    write_log(tmp_path / "log.nc", replace(flight, messages=messages), mission=MISSION, version="0.1.0")
+    back = read_log(tmp_path / "log.nc").flight.messages
+    assert back["sender"][0] == back["receiver"][-1] == 70_000
 
 
 def test_it_is_fast_and_small(tmp_path: Path, flight: Flight) -> None:

@@ -40,7 +40,7 @@ def flight(*compile_laws: Callable[..., Any]) -> Callable[..., None]:
             f"        t = {records('Thrusters', RING, VESSEL + HELM)}, at(rows, {RING_AT}))",
             "        surge = read(ShaftReading(v.shaft_speed))",
             "        wanted = load(asked, 0), load(asked, 1), load(asked, 2)",
-            "        f = Feedback(v.heading, v.yaw_rate, surge, v.depth, v.heave, wanted[0], wanted[1], wanted[2])",
+            "        f = Feedback(v.heading, v.yaw_rate, surge, v.depth, wanted[0], wanted[1], wanted[2])",
             "        command, h = steer(f, h, 0.05)",
             "        v, t = move(v, command, Water(load(asked, 3), load(asked, 4)), t, 0.05)",
             *[f"        store(rows, {k}, {value})" for k, value in enumerate(stores)],
@@ -102,7 +102,7 @@ def test_the_law_compiles_for_one_mission_and_for_lanes(law: Law) -> None:
 
 
 def test_laws_are_pure() -> None:
-    feedback, helm = Feedback(0.1, 0.0, 0.4, 1.0, 0.0, 0.3, 0.5, 2.0), Helm(started=1.0, sway=0.1)
+    feedback, helm = Feedback(0.1, 0.0, 0.4, 1.0, 0.3, 0.5, 2.0), Helm(started=1.0, sway=0.1)
     assert feedforward_pid(feedback, helm, 0.05) == feedforward_pid(feedback, helm, 0.05)
     wanted = Reference(heading=1.0, speed=0.5)
     assert kinematic(VesselState(), wanted, Water(), 0.1) == kinematic(VesselState(), wanted, Water(), 0.1)

@@ -34,7 +34,7 @@ def test_without_errors_a_reading_is_the_truth_to_the_last_bit(truth: VesselStat
     assert ahrs(truth, noise, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) == AhrsReading(truth.heading, truth.yaw_rate, 0.0, 0.0)
     assert depth(truth, noise, 0.0) == truth.depth
     assert dvl(truth, noise, 0.0) == DvlReading(truth.surge, truth.sway)
-    assert thruster_speed(truth, noise, 1.0, 0.0) == truth.shaft_speed
+    assert thruster_speed(truth, noise, 0.0) == truth.shaft_speed
     fix, drift = gnss(truth, noise, EACH_SECOND, Drift(), 0.0)
     assert np.array_equal(fix, (truth.north, truth.east)) == (truth.depth <= 0.2)
     assert drift[:2] == (0.0, 0.0)

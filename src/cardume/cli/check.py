@@ -1,6 +1,7 @@
 """`cardume check`: what theory knows about a mission before it flies."""
 
 import json
+import shlex
 import shutil
 import textwrap
 from collections.abc import Sequence
@@ -64,9 +65,11 @@ def _say(finding: Any, is_error: bool) -> None:
     width = min(shutil.get_terminal_size().columns, 100)
     click.secho(finding.level, fg=COLORS[finding.level], bold=True, nl=False, err=is_error)
     click.echo(f"  {finding.key}", err=is_error)
-    for text in (finding.message, f"would pass: {finding.suggestion}" if finding.suggestion else ""):
-        if text:
-            click.echo(textwrap.fill(text, width, initial_indent="    ", subsequent_indent="    "), err=is_error)
+    click.echo(textwrap.fill(finding.message, width, initial_indent="    ", subsequent_indent="    "), err=is_error)
+    if finding.suggestion:
+        settings = finding.suggestion.split(" and ")
+        typed = " ".join(f"--set {shlex.quote(setting)}" for setting in settings)
+        click.echo(f"    would pass: {typed}", err=is_error)
 
 
 def _total(findings: Sequence[Any]) -> str:

@@ -12,6 +12,7 @@ import errno
 import os
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from typing import Any
 
 import click
@@ -22,7 +23,7 @@ from cardume.cli.new import new
 from cardume.cli.run import run
 from cardume.cli.stopping import Stopped
 from cardume.errors import CardumeError
-from cardume.units import nearest, printable
+from cardume.units import printable
 
 FAILED, BUG, INTERRUPTED, BROKEN_PIPE = 3, 4, 130, 141
 
@@ -40,8 +41,10 @@ class Commands(click.Group):
         if self.get_command(ctx, name) is None and not name.startswith("-"):
             names = self.list_commands(ctx)
             is_mission = os.path.exists(name) or "/" in name or name.endswith((".yaml", ".yml"))
-            hint = f". Did you mean 'cardume run {name}'?" if is_mission else nearest(name, names)
-            ctx.fail(f"There is no command '{printable(name)}'{hint or '.'} Commands: {', '.join(names)}")
+            close = get_close_matches(name.lower(), names, n=1, cutoff=0.5)
+            meant = f"cardume run {name}" if is_mission else close[0] if close else ""
+            hint = f" Did you mean '{printable(meant)}'?" if meant else ""
+            ctx.fail(f"There is no command '{printable(name)}'.{hint} Commands: {', '.join(names)}")
         return super().resolve_command(ctx, args)
 
 
@@ -88,6 +91,8 @@ def _run_safely(arguments: Sequence[str] | None) -> int:
     except click.ClickException as problem:
         problem.show()
         return problem.exit_code
+    except SystemExit:  # all that click makes of a pipe that nobody reads any more
+        return _complain_about_output(BrokenPipeError(errno.EPIPE, "Broken pipe"))
     except (click.Abort, KeyboardInterrupt):
         return _complain("interrupted; nothing was kept", INTERRUPTED)
     except Stopped as stopped:
@@ -97,7 +102,7 @@ def _run_safely(arguments: Sequence[str] | None) -> int:
     except MemoryError:
         return _complain("not enough memory; shorten the mission, lengthen log_period, or fly fewer vehicles", FAILED)
     except OSError as problem:
-        if problem.errno in (errno.EPIPE, errno.ENOSPC, errno.EDQUOT):
+        if problem.errno in (errno.ENOSPC, errno.EDQUOT):
             return _complain_about_output(problem)
         return _own_up(problem)
     except Exception as problem:

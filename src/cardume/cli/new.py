@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 from importlib import resources
 from pathlib import Path
 
@@ -30,7 +31,8 @@ def new(file: Path, kind: str, allow_code: tuple[Path, ...], quiet: bool, as_jso
 
         click.echo(json.dumps({"file": str(file), "kind": kind}))
     elif not quiet:
-        click.echo(f"Wrote {file}\n\nNext\n  cardume check {file}\n  cardume run {file}")
+        quoted = shlex.quote(str(file))
+        click.echo(f"Wrote {file}\n\nNext\n  cardume check {quoted}\n  cardume run {quoted}")
     return 0
 
 

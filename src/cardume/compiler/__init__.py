@@ -14,7 +14,7 @@ from cardume.compiler.lanes import (
     where,
 )
 from cardume.compiler.records import Layout
-from cardume.compiler.rows import Rows, SharedRows, at, gather, load, rows_of, scatter, store
+from cardume.compiler.rows import Rows, SharedRows, at, by_width, gather, load, ramp, rows_of, scatter, spill, store
 
 __all__ = [
     "WIDTH",
@@ -22,17 +22,20 @@ __all__ = [
     "Rows",
     "SharedRows",
     "at",
+    "by_width",
     "compiled",
     "entry",
     "floor",
     "gather",
     "load",
     "negate",
+    "ramp",
     "rows_of",
     "scale2",
     "scatter",
     "some",
     "source_stamp",
+    "spill",
     "split2",
     "sqrt",
     "store",

@@ -15,28 +15,41 @@ from numba.core import cgutils
 
 from cardume.compiler.lanes import INT32, INT64, LANES, WIDTH
 from cardume.compiler.primitive import primitive
-from cardume.compiler.rows import LANE_ROWS, ROWS, Rows, SharedRows, as_law_sees, lane_of, make_rows, row_address
+from cardume.compiler.rows import (
+    ELEMENTS,
+    FLAT_ROWS,
+    LANE_ROWS,
+    ROWS,
+    Rows,
+    SharedRows,
+    as_law_sees,
+    lane_of,
+    row_address,
+)
 
 _python_laws: list[Callable[..., Any]] = []  # NUMBA_DISABLE_JIT: a handle is a place in this list
 
 
-def record_type(kind: Any, lanes: bool) -> Any:
-    """Numba type of a float, a record, or a tuple of them, for one mission or for lanes."""
+# How a law is compiled: the table type that it is given.
+FLAT, STRIDED, WIDE = FLAT_ROWS, ROWS, LANE_ROWS  # one mission; one lane of eight; eight missions at once
+
+
+def record_type(kind: Any, rows: Any) -> Any:
+    """Numba type of a float, a record, or a tuple of them, as wide as the rows of a table."""
+    real = ELEMENTS[rows]
     if kind is float:
-        return LANES if lanes else types.float64
+        return real
     if isinstance(kind, tuple):
-        return types.BaseTuple.from_types([record_type(k, lanes) for k in kind])
-    real, rows = (LANES, LANE_ROWS) if lanes else (types.float64, ROWS)
-    tables = {Rows: rows, SharedRows: ROWS}
+        return types.BaseTuple.from_types([record_type(k, rows) for k in kind])
+    tables = {Rows: rows, SharedRows: FLAT_ROWS}
     fields = [tables.get(kind.__annotations__.get(f), real) for f in kind._fields]
     return types.BaseTuple.from_types(fields, kind)
 
 
-def law_signature(signals: tuple[Any, ...], result: Any, lanes: bool) -> Any:
-    """Numba signature that all laws of a family share."""
-    rows = LANE_ROWS if lanes else ROWS
-    arguments = [record_type(s, lanes) for s in signals]
-    return record_type(result, lanes)(*arguments, rows, rows, types.float64)
+def law_signature(signals: tuple[Any, ...], result: Any, rows: Any) -> Any:
+    """Numba signature that all laws of a family share: FLAT, STRIDED or WIDE."""
+    arguments = [record_type(s, rows) for s in signals]
+    return record_type(result, rows)(*arguments, rows, rows, types.float64)
 
 
 def define_verb(verb: Callable[..., Any], place: int, signals: tuple[Any, ...], result: Any) -> None:
@@ -48,17 +61,16 @@ def define_verb(verb: Callable[..., Any], place: int, signals: tuple[Any, ...], 
         signals: record classes.
         result: float, a record class, or a tuple of them.
     """
-    scalar = law_signature(signals, result, lanes=False)
-    wide = law_signature(signals, result, lanes=True)
+    flat, strided, wide = (law_signature(signals, result, rows) for rows in (FLAT, STRIDED, WIDE))
 
     def typed(book: Any, slot: Any, *given: Any) -> Any:
-        law = wide if LANE_ROWS in book.types else scalar
+        law = wide if LANE_ROWS in book.types else flat
         return law.return_type(book, types.int64, *given)
 
     @primitive(verb, typed)
     def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
         book_type, book, slot = signature.args[0], arguments[0], arguments[1]
-        law = wide if LANE_ROWS in book_type.types else scalar
+        law = wide if LANE_ROWS in book_type.types else flat
         handles, gains, memory, dt = cgutils.unpack_tuple(b, book, len(book_type.types))
         columns = [b.gep(handles, [ir.Constant(INT64, place * 4 + k)]) for k in range(4)]
         handle, gain, first, width = [b.load(column) for column in columns]
@@ -69,13 +81,12 @@ def define_verb(verb: Callable[..., Any], place: int, signals: tuple[Any, ...], 
             for value, kind, wanted in zip(arguments[2:], signature.args[2:], law.args, strict=False)
         ]
         if law is wide:
-            return _call_lanes(c, b, wide, scalar, handle, parts, gains, memory, dt)
-        rows = [make_rows(c, b, table, ir.Constant(INT64, 1)) for table in (gains, memory)]
-        return _call(c, b, scalar, handle, [*parts, *rows, dt])
+            return _call_lanes(c, b, wide, strided, handle, parts, gains, memory, dt)
+        return _call(c, b, flat, handle, [*parts, gains, memory, dt])
 
 
 def _call_lanes(
-    c: Any, b: Any, wide: Any, scalar: Any, handle: Any, parts: Any, gains: Any, memory: Any, dt: Any
+    c: Any, b: Any, wide: Any, strided: Any, handle: Any, parts: Any, gains: Any, memory: Any, dt: Any
 ) -> Any:
     """Call a law for eight missions at once, or one after the other where it does not compile for lanes."""
     answer = cgutils.alloca_once(b, c.get_value_type(wide.return_type))
@@ -85,7 +96,7 @@ def _call_lanes(
         with each, cgutils.for_range(b, ir.Constant(INT64, WIDTH)) as loop:
             one = [_lane_value(c, b, p, kind, loop.index) for p, kind in zip(parts, wide.args, strict=False)]
             rows = [lane_of(c, b, gains, loop.index), lane_of(c, b, memory, loop.index)]
-            value = _call(c, b, scalar, b.neg(handle), [*one, *rows, dt])
+            value = _call(c, b, strided, b.neg(handle), [*one, *rows, dt])
             _put_lane(c, b, answer, value, wide.return_type, loop.index)
     return b.load(answer)
 
@@ -102,7 +113,7 @@ def law_answer(result: Any) -> Callable[..., Any]:
         return answer
 
     def typed(rows: Any, answer: Any) -> Any:
-        wanted = record_type(result, rows is LANE_ROWS)
+        wanted = record_type(result, rows)
         fits = not isinstance(wanted, types.BaseTuple) or (
             isinstance(answer, types.BaseTuple) and len(answer) == len(wanted)
         )
@@ -146,10 +157,8 @@ def _lane_value(c: Any, b: Any, value: Any, kind: Any, lane: Any) -> Any:
     if kind is LANE_ROWS:
         return lane_of(c, b, value, lane)
     if isinstance(kind, types.BaseTuple):
-        scalars = [types.float64 if k is LANES else ROWS for k in kind.types]
-        parts = [
-            _lane_value(c, b, b.extract_value(value, at), k, lane) for at, k in enumerate(kind.types)
-        ]
+        scalars = [{LANES: types.float64, LANE_ROWS: ROWS}.get(k, k) for k in kind.types]
+        parts = [_lane_value(c, b, b.extract_value(value, at), k, lane) for at, k in enumerate(kind.types)]
         return c.make_tuple(b, types.Tuple(scalars), parts)
     return value
 

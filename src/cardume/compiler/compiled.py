@@ -19,6 +19,9 @@ from numba import config, njit
 from numba.extending import overload
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
+# Records go by value: a call that is not inlined copies them, and a fleet is large; it cost half of a tick.
+INLINED = {"forceinline": True}
+LARGE = 12  # values
 COMPUTE_LAYERS = (
     "compiler",
     "maths",
@@ -34,6 +37,18 @@ F = TypeVar("F", bound=Callable[..., Any])
 _registered: set[Callable[..., Any]] = set()
 
 
+def _takes_much(function: Callable[..., Any]) -> bool:
+    """Whether a call would copy a large record: a fleet or a mind, not a state or an error."""
+    return any(_size(p.annotation) > LARGE for p in inspect.signature(function).parameters.values())
+
+
+def _size(kind: Any) -> int:
+    """How many values a record holds, those of records in it counted one by one."""
+    if not hasattr(kind, "_fields"):
+        return 1
+    return sum(_size(kind.__annotations__.get(field)) for field in kind._fields)
+
+
 def compiled(function: F) -> F:
     """Let compiled code call this function; return it unchanged.
 
@@ -44,11 +59,10 @@ def compiled(function: F) -> F:
         The same function.
     """
 
-    # A new code object for each number type: Numba compiles `function` itself, inlined where it pays.
-    first = next(iter(inspect.signature(function).parameters), "")
-    inlined = {"forceinline": True} if first in ("fleet", "mind") else {}
+    # Numba compiles `function` itself, once for each number type that it meets.
+    options = OPTIONS | (INLINED if _takes_much(function) else {})
 
-    @overload(function, strict=False, jit_options=OPTIONS | inlined)
+    @overload(function, strict=False, jit_options=options)
     def specialized(*arguments: Any) -> Callable[..., Any]:
         return function
 

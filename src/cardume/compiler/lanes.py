@@ -112,9 +112,7 @@ for _python, _llvm in (
     (operator.mul, "fmul"),
     (operator.truediv, "fdiv"),
 ):
-    _overload_lanes(
-        _python, _binary_intrinsic(lambda b, x, y, m=_llvm: getattr(b, m)(x, y), LANES, LANES, LANES)
-    )
+    _overload_lanes(_python, _binary_intrinsic(lambda b, x, y, m=_llvm: getattr(b, m)(x, y), LANES, LANES, LANES))
 for _python, _llvm in (
     (operator.lt, "<"),
     (operator.le, "<="),
@@ -122,13 +120,9 @@ for _python, _llvm in (
     (operator.ge, ">="),
     (operator.eq, "=="),
 ):
-    _overload_lanes(
-        _python, _binary_intrinsic(lambda b, x, y, m=_llvm: b.fcmp_ordered(m, x, y), LANES, LANES, MASK)
-    )
+    _overload_lanes(_python, _binary_intrinsic(lambda b, x, y, m=_llvm: b.fcmp_ordered(m, x, y), LANES, LANES, MASK))
 # NaN != NaN must hold, as in scalar code: an unordered comparison.
-_overload_lanes(
-    operator.ne, _binary_intrinsic(lambda b, x, y: b.fcmp_unordered("!=", x, y), LANES, LANES, MASK)
-)
+_overload_lanes(operator.ne, _binary_intrinsic(lambda b, x, y: b.fcmp_unordered("!=", x, y), LANES, LANES, MASK))
 
 
 def _overload_bits(python_operator: Any, method: str) -> None:

@@ -1,21 +1,23 @@
 """Rows: a column of numbers in a table, one float64 each, or eight missions each.
 
-A mission's state is plain tables of float64.  The engine sees a table as `FlatRows`, a bare
+A mission's state is plain tables of float64.  Compiled code sees a table as `FlatRows`, a bare
 pointer, or as `LaneRows`, a pointer whose every row is a register of eight missions; array views in
-the inner loop cost 15 to 20 %.  A law sees `Rows`, a pointer with a stride: so a law that does not
-compile for lanes can be shown one lane of a `LaneRows` table.  `Ints` is a table of whole numbers,
+the inner loop cost 15 to 20 %.  A law that does not compile for lanes is shown one lane of such a
+table as `Rows`, a pointer with a stride.  `Ints` is a table of whole numbers,
 the same for all lanes.  In plain Python all of them are one-dimensional numpy arrays.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import models, register_model
+from numba.extending import models, overload, register_model
 
-from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, widened
+from cardume.compiler.compiled import INLINED
+from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, spread, widened
 from cardume.compiler.primitive import primitive
 
 Rows = np.ndarray  # (k,) float64; how laws and records annotate a table
@@ -271,12 +273,48 @@ def as_law_sees(c: Any, b: Any, value: Any, kind: Any, wanted: Any) -> Any:
     """LLVM code that brings a number, a table or a record to the type that a law's signature asks for."""
     if kind == wanted:
         return value
-    if kind is FLAT_ROWS:
-        return make_rows(c, b, value, ir.Constant(INT64, 1))
     if isinstance(wanted, types.BaseTuple):
         parts = [
-            as_law_sees(c, b, b.extract_value(value, k), kind.types[k], part)
-            for k, part in enumerate(wanted.types)
+            as_law_sees(c, b, b.extract_value(value, k), kind.types[k], part) for k, part in enumerate(wanted.types)
         ]
         return c.make_tuple(b, wanted, parts)
     return widened(c, b, value, kind, wanted)
+
+
+def ramp(first: float, step: float) -> Any:
+    """first, first + step, ... in eight lanes; for code that computes ahead, in compiled code only."""
+    return first + step * np.arange(WIDTH)
+
+
+@primitive(ramp, lambda first, step: LANES(types.float64, types.float64))
+def _ramp(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    first, step = (spread(b, value, DOUBLES) for value in arguments)
+    return b.fadd(first, b.fmul(step, ir.Constant(DOUBLES, [float(k) for k in range(WIDTH)])))
+
+
+def spill(table: Rows, k: int, values: Any) -> None:
+    """Store eight lanes into eight rows from row k on; in compiled code only."""
+    table[k : k + WIDTH] = values
+
+
+@primitive(spill, lambda table, k, values: types.void(FLAT_ROWS, types.int64, LANES))
+def _spill(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    place = row_address(c, b, FLAT_ROWS, *arguments[:2])
+    store_row(b, LANE_ROWS, place, arguments[2])
+    return c.get_dummy_value()
+
+
+def by_width(flat: Callable[..., Any], lanes: Callable[..., Any]) -> Callable[..., Any]:
+    """One function for two kinds of tables: `flat` for one mission, `lanes` for eight and in plain Python.
+
+    Both take a table first and must give the same numbers.
+    """
+
+    def choose(table: Rows, *arguments: Any) -> Any:
+        return lanes(table, *arguments)
+
+    @overload(choose, strict=False, jit_options=INLINED)
+    def specialized(table: Any, *arguments: Any) -> Any:
+        return flat if table is FLAT_ROWS else lanes
+
+    return choose

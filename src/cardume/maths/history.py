@@ -34,5 +34,4 @@ def recall(history: Rows, size: int, tick: float) -> float:
     first = gather(history, before - size * floor(before / size))
     after = before + 1.0
     second = gather(history, after - size * floor(after / size))
-    # A share of zero must not read the slot after the newest: it holds the oldest value.
     return first + share * (second - first)

@@ -1,5 +1,6 @@
 """Files and directories that appear complete or not at all."""
 
+import errno
 import os
 import shutil
 from collections.abc import Iterator
@@ -76,6 +77,9 @@ def renewed_directory(target: Path, ours: tuple[str, ...]) -> Iterator[Path]:
     Args:
         target: an existing directory.
         ours: its entries that make place, whether or not a new one comes.
+
+    Raises:
+        FileExistsError: an entry that is not ours took a name meanwhile.
     """
     partial, old = _beside(target / "new"), _beside(target / "old")
     moved: list[tuple[Path, Path]] = []
@@ -86,6 +90,8 @@ def renewed_directory(target: Path, ours: tuple[str, ...]) -> Iterator[Path]:
         moves = [(target / name, old / name) for name in ours if (target / name).exists()]
         moves += [(entry, target / entry.name) for entry in sorted(partial.iterdir())]
         for source, destination in moves:
+            if destination.exists():
+                raise FileExistsError(errno.EEXIST, f"{destination.name} appeared there meanwhile", str(target))
             os.rename(source, destination)
             moved.append((source, destination))
     except BaseException:

@@ -94,7 +94,7 @@ def _read_tree(tree: Node, context: Context) -> Mission:
         with collector:
             # What is wrong for the fleet is told once, not again for each vehicle.
             whole = [_without(item, fleet_wide.keys() - good.keys()) for item in vehicles.value]
-            whole = [_inherit(item, good, context) for item in whole]
+            whole = [_equip(_inherit(item, good, context), context) for item in whole]
             entries["vehicles"] = Node(whole, vehicles.position)
     mission: Any = None
     with collector:
@@ -111,6 +111,21 @@ def _inherit(vehicle: Node, fleet_wide: dict[str, Node], context: Context) -> No
     for key, node in fleet_wide.items():
         entries[key] = merge(SHARED[key].kind, node, entries[key], context) if key in entries else node
     return Node(entries, vehicle.position)
+
+
+def _equip(vehicle: Node, context: Context) -> Node:
+    """A vehicle whose list of sensors also has those that its model always carries; `none` leaves one out."""
+    entries = vehicle.value if isinstance(vehicle.value, dict) else {}
+    sensors, model, depth = (entries.get(key) for key in ("sensors", "model", "depth"))
+    if sensors is None or not isinstance(sensors.value, dict):
+        return vehicle
+    named = model.value.get("law", model) if model is not None and isinstance(model.value, dict) else model
+    is_submerged = depth is not None and str(depth.value).split()[:1] not in (["0"], ["0.0"])
+    kinds = context.catalog.default_sensors("medusa" if named is None else str(named.value), is_submerged)
+    if isinstance(kinds, str):
+        return vehicle
+    carried = sensors.value | {kind: Node({}, sensors.position) for kind in kinds if kind not in sensors.value}
+    return Node(entries | {"sensors": Node(carried, sensors.position)}, vehicle.position)
 
 
 def _without(vehicle: Node, keys: Set[str]) -> Node:

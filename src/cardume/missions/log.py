@@ -213,7 +213,6 @@ def _write(group: Any, name: str, dimensions: tuple[str, ...], values: np.ndarra
         kind,
         dimensions,
         compression="zlib",
-        fletcher32=True,  # a flipped bit is noticed when the file is read
         fill_value=np.nan if kind == "f8" and name != "time" else False,
     )
     variable.setncatts(meaning._asdict())

@@ -11,7 +11,7 @@ from cardume.missions.tree import Node
 from cardume.missions.varying import is_varying
 from cardume.missions.vehicle import LawChoice
 from cardume.missions.wording import unknown
-from cardume.units import show_text
+from cardume.units import printable, show_text
 
 TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
     ("current", "gridded"): (
@@ -91,7 +91,7 @@ def _user_law(kind: Laws, name: str, named: Node, context: Context) -> Law:
     try:
         law = context.catalog.resolve_law(kind.family, name)
     except LawError as problem:
-        raise named.error(f"{show_text(name)} cannot be used: {problem}") from None
+        raise named.error(f"{show_text(name)} cannot be used: {printable(str(problem))}") from None
     except Exception as problem:  # whatever importing the user's file raises is the user's to mend
         reason = f"{type(problem).__name__}: {problem}"
         raise named.error(f"{show_text(name)} cannot be imported: {show_text(reason, 300)[1:-1]}") from problem

@@ -88,10 +88,10 @@ def _default_log_period(values: Mapping[str, Any], _context: Context) -> Any:
 class Mission:
     """A whole mission."""
 
-    cardume: Annotated[int, Whole(FORMAT_VERSION, FORMAT_VERSION, fixed=True), "version of the format"]
-    name: Annotated[str, Name(fixed=True), "of the mission"]
+    cardume: Annotated[int, Whole(FORMAT_VERSION, FORMAT_VERSION, fixed=True), "the version of the format"]
+    name: Annotated[str, Name(fixed=True), "what it is called"]
     seed: Annotated[int, Whole(fixed=True), "of all that is random"] = 0
-    duration: Annotated[float, Quantity("s", Bounds(0.0, 30 * 86_400.0, low_open=True)), "of the mission"]
+    duration: Annotated[float, Quantity("s", Bounds(0.0, 30 * 86_400.0, low_open=True)), "how long it lasts"]
     tick: Annotated[float, Quantity("s", TICKS, in_ticks=True), "how often vehicles sense, decide and speak"] = 0.1
     plant_step: Annotated[
         float, Quantity("s", Bounds(1e-5, 60.0), in_ticks=True), Default(_default_plant_step), "of the motion"

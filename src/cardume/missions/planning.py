@@ -1,7 +1,8 @@
 """From a mission, as written, to a plan, as the engine takes it."""
 
+import inspect
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,13 +28,14 @@ from cardume.paths.projection import point_at
 from cardume.paths.segment import GeometryError, ReferencePath, Start
 from cardume.paths.segments import ArcPiece, LinePiece, segments
 from cardume.paths.table import PathPlace, start_at
-from cardume.signals import VesselState
+from cardume.signals import Command, Reference, VesselState, Water
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
 from cardume.simulation.score import Rules
 
 IDEAL_SENSORS = ("gnss", "ahrs", "depth", "dvl", "thruster_speed")
 ERRORS = ("sigma", "bias", "deviation", "misalignment", "latency")  # parts of the names of parameters that are errors
 UNLIMITED = 1e9  # [m]
+TRIM_STEP = 0.05  # [s]
 TEXTS = ("file", "east", "north", "start_time")  # what `gridded` takes beside numbers
 
 
@@ -133,10 +135,17 @@ def _current(
     if chosen.name != "gridded":
         return _choice(chosen, catalog), np.zeros(1)
     if origin is None:
-        raise mission.error("origin", "a gridded current needs to know where the mission is; give latitude and longitude")
+        raise mission.error(
+            "origin", "a gridded current needs to know where the mission is; give latitude and longitude"
+        )
     texts = {key: chosen.parameters.get(key) for key in TEXTS}
     numbers = {key: value for key, value in chosen.parameters.items() if key not in texts}
-    window = Window(origin=origin, start_time=texts["start_time"], duration=mission.duration, deepest=max(v.depth for v in mission.vehicles))
+    window = Window(
+        origin=origin,
+        start_time=texts["start_time"],
+        duration=mission.duration,
+        deepest=max(v.depth for v in mission.vehicles),
+    )
     points = [outline(path, 20.0)[:, 1:] for path in paths]
     depths = [np.full((len(p), 1), v.depth) for p, v in zip(points, mission.vehicles, strict=True)]
     try:
@@ -175,7 +184,7 @@ def _vehicle(mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice
         "current": water,
         **_sensors(vehicle, mission.tick, catalog),
     }
-    state, place = _start(vehicle, path)
+    state, place = _start(vehicle, path, laws["model"])
     believed = vehicle.initial_estimate
     return VehiclePlan(
         vehicle.name,
@@ -235,7 +244,7 @@ def _exact(law: Law, tick: float) -> Choice:
     return Choice(law, exact | {"period": tick})
 
 
-def _start(vehicle: Vehicle, path: np.ndarray) -> tuple[VesselState, PathPlace]:
+def _start(vehicle: Vehicle, path: np.ndarray, model: Choice) -> tuple[VesselState, PathPlace]:
     """Where a vehicle starts, and where on its path that is."""
     start = vehicle.start
     if isinstance(start, RelativeStart):
@@ -246,6 +255,20 @@ def _start(vehicle: Vehicle, path: np.ndarray) -> tuple[VesselState, PathPlace]:
         heading = point.course + start.heading_error
     else:
         north, east, heading, place = start.north, start.east, start.heading, PathPlace()
-    speed = start.speed
-    shaft_speed = speed if vehicle.model.name == "kinematic" else 0.0
-    return VesselState(north, east, vehicle.depth, heading, speed, shaft_speed=shaft_speed), place
+    state = VesselState(north, east, vehicle.depth, heading, start.speed)
+    return state._replace(shaft_speed=_trimmed(model, start.speed)), place
+
+
+def _trimmed(model: Choice, speed: float) -> float:
+    """The shaft speed that a vehicle starts with: that of its model, steady at its speed."""
+    law = model.law
+    given: dict[str, Any] = {"vessel": VesselState(surge=speed), "command": Command(), "water": Water()}
+    given |= {"reference": Reference(speed=speed), "dt": TRIM_STEP, **model.parameters}
+    if law.memory_type is not None:
+        given["memory"] = law.memory_type(*(np.array(v) if np.ndim(v) else v for v in law.memory_type()))
+    names = inspect.signature(law.function).parameters
+    try:
+        answer = law.function(**{name: value for name, value in given.items() if name in names})
+    except Exception:  # a user's model; it is told what is wrong when it is compiled
+        return 0.0
+    return float((answer[0] if law.memory_type is not None else answer).shaft_speed)

@@ -23,6 +23,7 @@ from cardume.missions.schema import (
     fields_of,
 )
 from cardume.missions.tree import Node, join
+from cardume.missions.values import read_value, refused
 from cardume.missions.varying import is_varying, read_varying
 from cardume.missions.vehicle import LawChoice, Table
 from cardume.missions.wording import keys_of, unknown, wanted
@@ -36,7 +37,7 @@ def read(kind: Kind, node: Node, context: Context) -> Any:
         MissionError: with every problem below this node.
     """
     if node.value is None:
-        raise node.error(f"no value is given; must be {wanted(kind)}; or leave the key out")
+        raise node.error(f"no value is given; must be {wanted(kind)}")
     if is_varying(node):
         return read_varying(kind, node, lambda inner, item: read(inner, item, context))
     words = getattr(kind, "words", {})
@@ -135,6 +136,10 @@ def _variant(kind: Variant, node: Node, context: Context) -> Any:
 def _forms(kind: Forms, node: Node, context: Context) -> Any:
     entries = as_entries(kind, node)
     record = max(kind.records, key=lambda record: len(entries.keys() & set(keys_of(record))))
+    others = {key for other in kind.records for key in keys_of(other)} - set(keys_of(record))
+    for key in others & entries.keys():
+        beside = ", ".join(entries.keys() - others)
+        raise entries[key].error(f"does not go with {beside}; must be {wanted(kind)}")
     return read_record(record, entries, node, context)
 
 
@@ -214,7 +219,7 @@ def _field(field: Field, entries: dict[str, Node], section: Node, context: Conte
         return field.default
     if isinstance(field.kind, (Group, Laws, Variant)):
         return read(field.kind, Node({}, position), context)
-    raise missing(section, field.key, f"{field.doc}; must be {wanted(field.kind)}")
+    raise missing(section, field.key, f"{field.doc}: must be {wanted(field.kind)}")
 
 
 def _refuse_unknown(entries: dict[str, Node], valid: Set[str], section: Node, collector: Collector) -> None:

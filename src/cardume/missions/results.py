@@ -35,8 +35,9 @@ class Destination(NamedTuple):
     """Where results will go."""
 
     directory: Path
-    is_numbered: bool  # take the next number if somebody else takes this one meanwhile
-    ours: tuple[str, ...] = ()  # entries of an earlier run there, which make place
+    is_numbered: bool = False  # take the next number if somebody else takes this one meanwhile
+    is_there: bool = False  # already, empty or with an earlier run
+    ours: tuple[str, ...] = ()  # entries of the earlier run, which make place
 
 
 def choose_destination(mission_name: str, given: Path | None = None) -> Destination:
@@ -56,7 +57,7 @@ def choose_destination(mission_name: str, given: Path | None = None) -> Destinat
         parent = RUNS / mission_name
         destination = Destination(parent / f"{_last_number(parent) + 1:03d}", is_numbered=True)
     else:
-        destination = Destination(given, is_numbered=False, ours=_earlier_run(given))
+        destination = Destination(given, is_there=given.is_dir(), ours=_earlier_run(given))
     _refuse_unwritable(destination.directory)
     return destination
 
@@ -98,7 +99,7 @@ def write_results(
 
 
 def _opened(destination: Destination) -> AbstractContextManager[Path]:
-    if destination.directory.is_dir():
+    if destination.is_there:
         return renewed_directory(destination.directory, destination.ours)
     return new_directory(destination.directory)
 
@@ -111,7 +112,7 @@ def _fill(
     version: str,
     draw: Callable[[Path], None] | None,
 ) -> dict[str, Any]:
-    resolved = mission.to_yaml(final)
+    resolved = f"# As flown by cardume {version}, every default written.\n{mission.to_yaml(final)}"
     (folder / "mission.yaml").write_text(resolved, encoding="utf-8")
     write_log(folder / "log.nc", flight, mission=resolved, version=version)
     if draw is not None:

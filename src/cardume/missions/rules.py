@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 from cardume.errors import MissionError, Problem
-from cardume.missions.distributions import values_of
-from cardume.missions.mission import Formation, Mission
-from cardume.missions.route import AnyPath, FilePath, SegmentsPath
+from cardume.missions.distributions import Varying, values_of
+from cardume.missions.mission import Mission
+from cardume.missions.route import FilePath, SegmentsPath
 from cardume.missions.vehicle import LawChoice
 from cardume.units import show_quantity
 
@@ -56,8 +57,9 @@ def _period_rules(mission: Mission) -> Iterator[tuple[str, str]]:
 
 
 def _path_rules(mission: Mission) -> Iterator[tuple[str, str]]:
-    path, formation = mission.path, mission.formation
-    if not isinstance(path, AnyPath) or not isinstance(formation, Formation) or formation.speed is not None:
+    path: object = mission.path
+    formation: Any = mission.formation
+    if isinstance(path, Varying) or isinstance(formation, Varying) or formation.speed is not None:
         return
     pieces = path.segments if isinstance(path, SegmentsPath) else ()
     if isinstance(path, FilePath) or (pieces and all(getattr(piece, "speed", 0.0) is not None for piece in pieces)):

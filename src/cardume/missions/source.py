@@ -124,7 +124,7 @@ def _is_layout(char: str) -> bool:
 def _syntax_message(problem: MarkedYAMLError) -> str:
     parts = [part for part in (problem.context, problem.problem) if part]
     advice = "indent with spaces and write 'key: value'; quote a text that holds : # [ or {"
-    return f"is not valid YAML, {', '.join(parts)}; {advice}"
+    return f"is not valid YAML, {printable(', '.join(parts))}; {advice}"
 
 
 class _Builder:

@@ -26,9 +26,9 @@ class Node:
     def given(self) -> str:
         """What was given, in words for a message."""
         if isinstance(self.value, dict):
-            return "a mapping"
+            return "a mapping" if self.value else "an empty mapping"
         if isinstance(self.value, list):
-            return "a list"
+            return "a list" if self.value else "an empty list"
         if self.value is None or isinstance(self.value, bool):
             return {None: "nothing", True: "true", False: "false"}[self.value]
         return show_text(self.value)

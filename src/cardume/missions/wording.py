@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import singledispatch
 
 from cardume.missions.schema import (
@@ -24,7 +23,7 @@ from cardume.missions.schema import (
     Word,
     fields_of,
 )
-from cardume.units import format_quantity, nearest
+from cardume.units import DEGREE, nearest, show_quantity
 
 
 @singledispatch
@@ -39,7 +38,7 @@ def wanted(kind: Kind) -> str:
 
 @wanted.register
 def _quantity(kind: Quantity) -> str:
-    example = f", as '{format_quantity(_example(kind.bounds), kind.unit)}'" if kind.unit else ""
+    example = f", as '{_example(kind)}'" if kind.unit else ""
     return f"a number{example}{_limits(kind.bounds, kind.unit)}"
 
 
@@ -57,7 +56,7 @@ def _word(kind: Word) -> str:
 
 @wanted.register
 def _name(_kind: Name) -> str:
-    return "a text of 1 to 64 letters, digits, - and _ that begins with a letter or digit; quote a number"
+    return "1 to 64 letters, digits, - and _, first a letter or digit; a number in quotes"
 
 
 @wanted.register
@@ -122,16 +121,17 @@ def unknown(what: str, given: str, valid: list[str]) -> str:
 
 def _limits(bounds: Bounds, unit: str) -> str:
     ends = []
-    if bounds.low > -HUGE and math.isfinite(bounds.low):
-        ends.append(f"{'above' if bounds.low_open else 'at least'} {format_quantity(bounds.low, unit)}")
-    if bounds.high < HUGE and math.isfinite(bounds.high):
-        ends.append(f"{'below' if bounds.high_open else 'at most'} {format_quantity(bounds.high, unit)}")
+    if bounds.low > -HUGE:
+        ends.append(f"{'above' if bounds.low_open else 'at least'} {show_quantity(bounds.low, unit, 12)}")
+    if bounds.high < HUGE:
+        ends.append(f"{'below' if bounds.high_open else 'at most'} {show_quantity(bounds.high, unit, 12)}")
     if not ends:
         return f", at most {HUGE:g} {unit}".rstrip() + " in size"
     return f", {' and '.join(ends)}"
 
 
-def _example(bounds: Bounds) -> float:
-    if bounds.contain(1.0):
-        return 1.0
-    return bounds.low if bounds.contain(bounds.low) else bounds.high
+def _example(kind: Quantity) -> str:
+    for value in (10.0 * DEGREE if kind.unit in ("rad", "rad/s") else 1.0, kind.bounds.low, kind.bounds.high):
+        if kind.bounds.contain(value):
+            return show_quantity(value, kind.unit)
+    return show_quantity((kind.bounds.low + kind.bounds.high) / 2.0, kind.unit)

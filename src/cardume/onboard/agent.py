@@ -48,7 +48,7 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
     position = navigate(mind, measured, heard, motion, time)
     current = observe_current(mind, position, motion)
     error = locate(mind, position, motion, current)
-    look_around(mind, measured, position, error, time)
+    look_around(mind, measured, position, motion, error, time)
     others = predict_neighbors(mind, heard, error, time)
     course = guide(mind, error)
     along = progress(mind, error, coordinate(mind, others))

@@ -6,7 +6,6 @@ from cardume.compiler import Layout, Rows, at, compiled, load
 from cardume.laws import LawBook
 from cardume.signals import NOTHING, DvlReading, Report, Sighting, Water
 
-
 LONG_AGO = -1e9  # [s] before any mission
 
 

@@ -1,7 +1,7 @@
 """Where am I, how fast, and where on my path."""
 
 from cardume.compiler import Rows, compiled, load, some, where
-from cardume.maths import clip, to_ned
+from cardume.maths import clip, to_ned, to_path
 from cardume.onboard.estimation.current import observe
 from cardume.onboard.estimation.position import estimate_position
 from cardume.onboard.estimation.speed.base import read_shaft
@@ -56,8 +56,16 @@ def speed_through_water(mind: Mind, measured: Measured) -> DvlReading:
 def believed_motion(mind: Mind, measured: Measured, speed: DvlReading) -> Motion:
     """How the vehicle believes it moves, with the current of the last tick."""
     current = get_current(mind.own, 0)
+    north, east = to_ned(measured.heading, speed.surge, speed.sway)
     return Motion(
-        measured.heading, measured.yaw_rate, speed.surge, speed.sway, current.north, current.east
+        measured.heading,
+        measured.yaw_rate,
+        speed.surge,
+        speed.sway,
+        north,
+        east,
+        current.north,
+        current.east,
     )
 
 
@@ -128,7 +136,6 @@ def locate(mind: Mind, position: NavigationEstimate, motion: Motion, current: Wa
 @compiled
 def rate_along(error: PathError, motion: Motion, current: Water) -> float:
     """Rate of the coordination state [m/s]."""
-    north, east = to_ned(motion.heading - error.path_course, motion.surge, motion.sway)
-    along, _ = to_ned(-error.path_course, current.north, current.east)
+    along, _ = to_path(error.path_course, motion.north + current.north, motion.east + current.east)
     room = clip(1.0 - error.curvature * error.cross_track, NEAREST_CENTER, 1e9)
-    return (north + along) / (room * error.stretch)
+    return along / (room * error.stretch)

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from cardume.compiler import Rows, at, compiled, load, some, where
-from cardume.maths import to_cartesian, to_ned, to_ned_3d
+from cardume.maths import to_cartesian, to_ned_3d
 from cardume.onboard.coordination import correct_speed
 from cardume.onboard.estimation.neighbors import predict
 from cardume.onboard.messaging import decide_to_send
@@ -13,10 +13,8 @@ from cardume.onboard.mind import (
     Speech,
     get_acquaintance,
     get_along,
-    get_current,
     get_setup,
     get_speech,
-    get_speed,
     head_of,
     is_fresh,
     message_from,
@@ -31,6 +29,7 @@ from cardume.signals import (
     NOTHING,
     Disagreement,
     Measured,
+    Motion,
     NavigationEstimate,
     NeighborReport,
     Outbox,
@@ -65,9 +64,7 @@ def listen(mind: Mind, heard: Rows) -> None:
 def forget_news(mind: Mind, vehicle: int) -> None:
     """What was new in the last tick is known now."""
     known = get_acquaintance(mind.others, vehicle)
-    put_acquaintance(
-        mind.others, vehicle, _updated(known, known.state, known.path_speed, known.time_of_validity, 0.0)
-    )
+    put_acquaintance(mind.others, vehicle, _updated(known, known.state, known.path_speed, known.time_of_validity, 0.0))
 
 
 @compiled
@@ -87,21 +84,19 @@ def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
 
 @compiled
 def _updated(known: Acquaintance, state: float, path_speed: float, valid: float, is_new: float) -> Acquaintance:
-    return Acquaintance(
-        state, path_speed, valid, is_new, known.predicted, known.north, known.east, known.time_of_fix
-    )
+    return Acquaintance(state, path_speed, valid, is_new, known.predicted, known.north, known.east, known.time_of_fix)
 
 
 @compiled
-def look_around(mind: Mind, measured: Measured, position: NavigationEstimate, error: PathError, time: float) -> None:
+def look_around(
+    mind: Mind, measured: Measured, position: NavigationEstimate, motion: Motion, error: PathError, time: float
+) -> None:
     """With a USBL head: turn each new reading into the other's position and coordination state.
 
     p_j = p_1 - V_1 age + R_1 r, R_1 the measured attitude, turned back by the yaw rate times the age;
     gamma_j is the projection of p_j on j's own path.
     """
     shares = some(get_setup(mind.own, 0).shares_sightings > 0.5)
-    speed, current = get_speed(mind.own, 0), get_current(mind.own, 0)
-    way_north, way_east = to_ned(measured.heading, speed.surge, speed.sway)
     for vehicle in range(mind.size if shares else 0):
         reading = at(measured.usbl, vehicle * USBL_WIDTH)
         age = load(reading, 3)
@@ -111,15 +106,13 @@ def look_around(mind: Mind, measured: Measured, position: NavigationEstimate, er
             north, east, _ = to_ned_3d(
                 measured.roll, measured.pitch, measured.heading - measured.yaw_rate * age, ahead, starboard, down
             )
-            north = north + position.north - age * (way_north + current.north)
-            east = east + position.east - age * (way_east + current.east)
+            north = north + position.north - age * (motion.north + motion.current_north)
+            east = east + position.east - age * (motion.east + motion.current_east)
             sight(mind, vehicle, is_new, north, east, time - age, error)
 
 
 @compiled
-def sight(
-    mind: Mind, vehicle: int, is_new: bool, north: float, east: float, valid: float, error: PathError
-) -> None:
+def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, valid: float, error: PathError) -> None:
     """Note where a vehicle was seen, and how far along its path that is."""
     known = get_acquaintance(mind.others, vehicle)
     found = find_reference_point(

@@ -33,6 +33,7 @@ from cardume.paths.table import (
     STRETCH,
     PathPlace,
     segment_at,
+    segment_near,
     segment_value,
 )
 from cardume.signals import PathError, Place
@@ -185,7 +186,40 @@ def point_at(path: Rows, arc_length: float) -> PointAhead:
     Returns:
         Position [m], course [rad] in (-pi, pi], and its sine and cosine.
     """
-    segment = segment_at(path, arc_length, ARC_START)
+    return point_on(path, segment_at(path, arc_length, ARC_START), arc_length)
+
+
+@compiled
+def point_of_formation(path: Rows, path_parameter: float, guess: float) -> PointAhead:
+    """Where a vehicle belongs when the formation has this coordination state.
+
+    Args:
+        path: (n,) path table.
+        path_parameter: [m] gamma less the vehicle's `ahead`.
+        guess: [-] number of the segment where it probably is.
+
+    Returns:
+        The point of its own path.
+    """
+    gamma = path_parameter + load(path, AHEAD)
+    segment = segment_near(path, gamma, REFERENCE_START, guess)
+    beyond = gamma - segment_value(path, segment, REFERENCE_START)
+    arc_length = segment_value(path, segment, ARC_START) + beyond * segment_value(path, segment, STRETCH)
+    return point_on(path, segment, arc_length)
+
+
+@compiled
+def point_on(path: Rows, segment: float, arc_length: float) -> PointAhead:
+    """A point of one segment, extended beyond its ends.
+
+    Args:
+        path: (n,) path table.
+        segment: [-] its number.
+        arc_length: [m] on the own path.
+
+    Returns:
+        Position [m], course [rad] in (-pi, pi], and its sine and cosine.
+    """
     s = arc_length - segment_value(path, segment, ARC_START)
     c = segment_value(path, segment, CURVATURE)
     sin_start, cos_start = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)

@@ -87,6 +87,27 @@ def segment_at(path: Rows, value: float, column: int) -> float:
 
 
 @compiled
+def segment_near(path: Rows, value: float, column: int, guess: float) -> float:
+    """The same as `segment_at`, at once where the guess is right or a neighbor is.
+
+    Args:
+        path: (n,) path table.
+        value: [m] what is looked for.
+        column: ARC_START or REFERENCE_START.
+        guess: [-] number of a segment of this path.
+    """
+    last = load(path, NUM_SEGMENTS) - 1.0
+    onward = (guess < last) & (segment_value(path, where(guess < last, guess + 1.0, guess), column) <= value)
+    back = (guess > 0.0) & (segment_value(path, guess, column) > value)
+    found = guess + where(onward, 1.0, where(back, -1.0, 0.0))
+    beyond = (found < last) & (segment_value(path, where(found < last, found + 1.0, found), column) <= value)
+    before = (found > 0.0) & (segment_value(path, found, column) > value)
+    if some(beyond | before):
+        found = segment_at(path, value, column)
+    return found
+
+
+@compiled
 def arc_length_at(path: Rows, path_parameter: float) -> float:
     """Own arc length at which a vehicle has this coordination state; extends beyond both ends.
 

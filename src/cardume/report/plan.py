@@ -72,7 +72,6 @@ def _widened(low: np.ndarray, high: np.ndarray, shape: float) -> tuple[np.ndarra
 def _prepare(axes: Any, low: np.ndarray, high: np.ndarray) -> None:
     axes.set_xlim(low[1], high[1])
     axes.set_ylim(low[0], high[0])
-    axes.set_aspect("equal")
     axes.set_xlabel("east [m]")
     axes.set_ylabel("north [m]")
     axes.locator_params(nbins=6)

@@ -1,6 +1,7 @@
 """The numbers of a flight as a table of plain text, as wide as the terminal and no wider."""
 
 import math
+import textwrap
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -67,7 +68,7 @@ def results_table(flight: Flight, width: int) -> str:
     heading = line("vehicle", [column.heading for column, _ in chosen])
     body = [line(label, [cells[row] for _, cells in chosen]) for row, label in enumerate(labels)]
     groups = " " * first + _group_line(chosen, widths, gap)
-    return "\n".join([groups.rstrip(), heading, "-" * len(heading), *body, *_footnotes(flight, shown)])
+    return "\n".join([groups.rstrip(), heading, "-" * len(heading), *body, *_footnotes(flight, shown, width)])
 
 
 def _widths(chosen: Sequence[tuple[Column, Sequence[str]]], gap: int) -> list[int]:
@@ -162,12 +163,12 @@ def _or_worst(flight: Flight, name: str) -> float:
     return value if math.isfinite(value) else math.inf
 
 
-def _footnotes(flight: Flight, shown: Sequence[str]) -> list[str]:
+def _footnotes(flight: Flight, shown: Sequence[str], width: int) -> list[str]:
     hidden = len(flight.vehicle_names) - len(shown)
     notes = [f"{hidden} vehicles with smaller errors are not shown; all are in summary.json"] if hidden else []
     if len(flight.vehicle_names) > 1:
         notes.append("fleet: the worst vehicle; coord.: largest difference along the reference path [m]")
-    return notes
+    return [textwrap.fill(note, max(width, 20)) for note in notes]
 
 
 def _cut(text: str, longest: int) -> str:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cardume.compiler import Layout, Rows, at, compiled, load, rows_of
+from cardume.compiler import Layout, Rows, at, compiled, rows_of
 from cardume.laws import COLUMNS, FAMILIES, LawBook
 from cardume.maths.random import Key
 from cardume.onboard.mind import OTHERS_WIDTH, OWN_WIDTH, Mind
@@ -25,6 +25,7 @@ class Timing(NamedTuple):
     period: float = 1.0  # [ticks]
     latency: float = 0.0  # [ticks]
     is_noisy: float = 1.0  # [-] 0: its law asks for no noise
+    sample: float = 0.0  # [-] readings so far
 
 
 class OnPath(NamedTuple):
@@ -46,7 +47,6 @@ class Held(NamedTuple):
     roll: float = np.nan  # [rad]
     pitch: float = np.nan  # [rad]
     depth: float = np.nan  # [m]
-    heave: float = 0.0  # [m/s] from the last two depths
     shaft_speed: float = np.nan  # [rad/s]
     dvl_surge: float = np.nan  # [m/s]
     dvl_sway: float = np.nan  # [m/s]
@@ -111,6 +111,7 @@ class Fleet(NamedTuple):
     usbl: Rows  # (vehicle, vehicle, 4) readings of this tick
     timings: Rows  # (vehicle, sensor, Timing)
     keys: Rows  # (vehicle, stream, Key), then the fleet's own
+    noise: Rows  # (vehicle, sensor, NOISE_WIDTH), then the fleet's own
     past: Rows  # (vehicle, tick, SEEN)
     past_size: int  # [ticks] 1: no sensor looks back
     paths: Rows
@@ -158,6 +159,7 @@ class Tables(NamedTuple):
     usbl: np.ndarray
     timings: np.ndarray
     keys: np.ndarray
+    noise: np.ndarray
     past: np.ndarray
     paths: np.ndarray
     path_starts: np.ndarray
@@ -210,6 +212,7 @@ def fleet_of(tables: Tables) -> Fleet:
         rows_of(tables.usbl),
         rows_of(tables.timings),
         rows_of(tables.keys),
+        rows_of(tables.noise),
         rows_of(tables.past),
         whole.past_size,
         rows_of(tables.paths),

@@ -9,13 +9,13 @@ from typing import NamedTuple
 from cardume.compiler import Layout, at, compiled, gather, load, scatter, some, where
 from cardume.maths import clip, floor, sqrt
 from cardume.onboard.mind import get_current, get_whereabouts
-from cardume.paths.projection import point_at
-from cardume.paths.table import arc_length_at
+from cardume.paths.projection import point_of_formation
 from cardume.signals import VesselState
 from cardume.simulation.fleet import (
     Fleet,
     OnPath,
     get_on_path,
+    get_true_place,
     get_vessel,
     get_water,
 )
@@ -113,9 +113,7 @@ def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time
     squared = error * error
     first_state = where(ends, on_path.coordination_state, before.first_state)
     believed, current = believed_errors(fleet, vehicle, vessel)
-    advance = where(
-        on_path.coordination_state > before.farthest, on_path.coordination_state - before.farthest, 0.0
-    )
+    advance = where(on_path.coordination_state > before.farthest, on_path.coordination_state - before.farthest, 0.0)
     covers = where(rules.swath > 0.0, clip(1.0 - error / where(rules.swath > 0.0, rules.swath, 1.0), 0.0, 1.0), 0.0)
     yaw_acceleration = (vessel.yaw_rate - before.last_yaw_rate) / dt
     after = Score(
@@ -176,9 +174,7 @@ def note_sent(fleet: Fleet, vehicle: int, sends: bool) -> None:
 def note_heard(fleet: Fleet, vehicle: int, here: bool, age: float) -> None:
     """Count a message that reached a vehicle, and how old its news was."""
     talk = get_talk(fleet.scores, vehicle)
-    after = Talk(
-        talk.sent, talk.delivered + 1.0, talk.age_sum + age, where(age > talk.age_max, age, talk.age_max)
-    )
+    after = Talk(talk.sent, talk.delivered + 1.0, talk.age_sum + age, where(age > talk.age_max, age, talk.age_max))
     put_talk(fleet.scores, vehicle, where(here, after, talk))
 
 
@@ -227,7 +223,7 @@ def score_formation(fleet: Fleet, mean_state: float, counts: bool) -> None:
     north, east = 0.0 * mean_state, 0.0 * mean_state
     for vehicle in range(fleet.size):
         path = at(fleet.paths, load(fleet.path_starts, vehicle))
-        wanted = point_at(path, arc_length_at(path, mean_state))
+        wanted = point_of_formation(path, mean_state, get_true_place(fleet.vehicles, vehicle).segment)
         vessel = get_vessel(fleet.vehicles, vehicle)
         away = Deviation(vessel.north - wanted.north, vessel.east - wanted.east)
         put_deviation(fleet.scores, vehicle, away)

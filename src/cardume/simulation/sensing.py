@@ -38,6 +38,7 @@ from cardume.simulation.fleet import (
     put_satellite,
     put_timing,
 )
+from cardume.simulation.noise import NOISE_WIDTH, noise_of_reading
 from cardume.world.sensors.base import (
     read_ahrs,
     read_depth,
@@ -85,10 +86,10 @@ def timing_of(fleet: Fleet, vehicle: int, sensor: int) -> Timing:
 @compiled
 def schedule_next(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, due: bool) -> None:
     """After a reading, set when the next one is delivered."""
+    sample = where(due, timing.sample + 1.0, timing.sample)
     following = where(due, timing.next_sample + timing.period, timing.next_sample)
-    put_timing(
-        fleet.timings, vehicle * NUM_SENSORS + sensor, Timing(following, timing.period, timing.latency, timing.is_noisy)
-    )
+    after = Timing(following, timing.period, timing.latency, timing.is_noisy, sample)
+    put_timing(fleet.timings, vehicle * NUM_SENSORS + sensor, after)
 
 
 @compiled
@@ -102,7 +103,9 @@ def noise_of(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, now: int) 
     """The noise of a reading, named after the tick it is valid in."""
     noise = Noise(0.0 * timing.latency, 0.0 * timing.latency, 0.0 * timing.latency, 0.0 * timing.latency)
     if some(timing.is_noisy > 0.5):
-        noise = normals(key_of(fleet, vehicle, sensor), now - timing.latency)
+        kept = at(fleet.noise, (vehicle * NUM_SENSORS + sensor) * NOISE_WIDTH)
+        key, tick = key_of(fleet, vehicle, sensor), now - timing.latency
+        noise = noise_of_reading(kept, key, tick, timing.period, timing.sample)
     return noise
 
 
@@ -117,7 +120,7 @@ def past_row(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> float:
 def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselState:
     """The state of a vehicle when the reading of this tick was valid."""
     vessel = get_vessel(fleet.vehicles, vehicle)
-    if fleet.past_size > 1:
+    if some(timing.latency > 0.5):
         vessel = pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now))
     return vessel
 
@@ -126,7 +129,7 @@ def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselS
 def water_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> Water:
     """The water around a vehicle when the reading of this tick was valid."""
     water = get_water(fleet.vehicles, vehicle)
-    if fleet.past_size > 1:
+    if some(timing.latency > 0.5):
         water = pick_past_water(fleet.past, past_row(fleet, vehicle, timing, now))
     return water
 
@@ -164,7 +167,6 @@ def _with_attitude(held: Held, reading: AhrsReading) -> Held:
         reading.roll,
         reading.pitch,
         held.depth,
-        held.heave,
         held.shaft_speed,
         held.dvl_surge,
         held.dvl_sway,
@@ -173,7 +175,7 @@ def _with_attitude(held: Held, reading: AhrsReading) -> Held:
 
 @compiled
 def sense_depth(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
-    """Depth by pressure, and heave from its last two readings."""
+    """Depth by pressure."""
     timing = timing_of(fleet, vehicle, DEPTH)
     due = timing.next_sample <= now
     if some(due):
@@ -185,22 +187,19 @@ def sense_depth(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
             noise_of(fleet, vehicle, DEPTH, timing, now),
             sampling_of(fleet, timing, now),
         )
-        sunk = (depth - held.depth) / (timing.period * fleet.tick)
-        heave = where(held.depth == held.depth, sunk, 0.0)
-        held = where(due, _with_depth(held, depth, heave), held)
+        held = where(due, _with_depth(held, depth), held)
         schedule_next(fleet, vehicle, DEPTH, timing, due)
     return held
 
 
 @compiled
-def _with_depth(held: Held, depth: float, heave: float) -> Held:
+def _with_depth(held: Held, depth: float) -> Held:
     return Held(
         held.heading,
         held.yaw_rate,
         held.roll,
         held.pitch,
         depth,
-        heave,
         held.shaft_speed,
         held.dvl_surge,
         held.dvl_sway,
@@ -253,7 +252,6 @@ def _with_speeds(held: Held, shaft_speed: float, surge: float, sway: float) -> H
         held.roll,
         held.pitch,
         held.depth,
-        held.heave,
         shaft_speed,
         surge,
         sway,

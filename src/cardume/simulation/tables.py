@@ -14,7 +14,7 @@ from cardume.paths.table import PathPlace
 from cardume.signals import Noise
 from cardume.simulation.air import NEVER
 from cardume.simulation.fleet import (
-    KEY,
+    NUM_SENSORS,
     SEEN,
     SENSORS,
     STREAMS,
@@ -26,6 +26,7 @@ from cardume.simulation.fleet import (
     Timing,
     Whole,
 )
+from cardume.simulation.noise import NOISE_WIDTH
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
 from cardume.simulation.recording import LOG, MESSAGE_LOG, NUM_COUNTS
 from cardume.simulation.score import BINS, FLEET_SCORES, HISTOGRAMS, RULES, SCORES, FleetScore
@@ -79,6 +80,7 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
         np.full(size * size * USBL_COLUMNS, np.nan),
         np.concatenate([_timing_row(v, plan.tick) for v in vehicles]),
         np.concatenate([*(_key_row(v, plan.seed) for v in vehicles), random_key(plan.seed, "current")]),
+        np.zeros((size * NUM_SENSORS + 1) * NOISE_WIDTH),
         np.zeros(max(1, size * past_size * SEEN.width)),
         paths,
         path_starts,
@@ -154,9 +156,16 @@ def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
         if sensor in vehicle.laws:
             choice = vehicle.laws[sensor]
             latency = float(round(choice.value("latency") / tick))
-            timing = Timing(latency, float(max(1, round(choice.value("period") / tick))), latency, float(choice.law.asks_for(Noise)))
+            period = float(max(1, round(choice.value("period") / tick)))
+            timing = Timing(latency, period, latency, float(_is_noisy(choice)))
         row.append(_row(TIMING, timing))
     return np.concatenate(row)
+
+
+def _is_noisy(choice: Choice) -> bool:
+    """Whether a sensor's law asks for noise, and is not told that all of it is zero."""
+    sigmas = [p.name for p in choice.law.parameters if "sigma" in p.name]
+    return choice.law.asks_for(Noise) and (not sigmas or any(choice.value(name) for name in sigmas))
 
 
 def _key_row(vehicle: VehiclePlan, seed: int) -> np.ndarray:
@@ -180,9 +189,7 @@ def _handles(vehicles: Sequence[VehiclePlan], size: int, lanes: bool) -> np.ndar
 
 def _gains(vehicles: Sequence[VehiclePlan]) -> np.ndarray:
     rows = [
-        np.concatenate(
-            [v.laws[f].law.gains(**v.laws[f].parameters) for f in FAMILIES if f in v.laws] or [np.zeros(0)]
-        )
+        np.concatenate([v.laws[f].law.gains(**v.laws[f].parameters) for f in FAMILIES if f in v.laws] or [np.zeros(0)])
         for v in vehicles
     ]
     return _stacked(rows)
@@ -219,9 +226,7 @@ def _place_on_paths(vehicles: Sequence[VehiclePlan], memories: np.ndarray) -> No
         first = 0
         for family in FAMILIES[: FAMILIES.index("reference_point")]:
             if family in vehicle.laws:
-                first += vehicle.laws[family].law.initial_memory().size * (
-                    len(vehicles) if family in PER_OTHER else 1
-                )
+                first += vehicle.laws[family].law.initial_memory().size * (len(vehicles) if family in PER_OTHER else 1)
         law = vehicle.laws["reference_point"].law
         width = law.initial_memory().size
         for other in vehicles:

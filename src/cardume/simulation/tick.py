@@ -1,13 +1,13 @@
 """One tick of the engine."""
 
 from cardume.compiler import Rows, at, compiled, load, negate, some, store, where
-from cardume.maths.random import normals
 from cardume.onboard.agent import decide
 from cardume.onboard.mind import get_whereabouts
 from cardume.paths.projection import project
 from cardume.signals import Noise, Place, VesselState, Water, Where
 from cardume.simulation.air import arrived, carry, speak
 from cardume.simulation.fleet import (
+    NUM_SENSORS,
     NUM_STREAMS,
     Fleet,
     OnPath,
@@ -26,6 +26,7 @@ from cardume.simulation.fleet import (
     put_water,
 )
 from cardume.simulation.motion import move
+from cardume.simulation.noise import NOISE_WIDTH, noise_of_reading
 from cardume.simulation.recording import record
 from cardume.simulation.score import score, score_fleet
 from cardume.simulation.sensing import sense
@@ -71,7 +72,8 @@ def tick(fleet: Fleet, now: int) -> bool:
 @compiled
 def common_noise(fleet: Fleet, now: int) -> Noise:
     """The randomness of the sea, the same for all vehicles."""
-    return normals(get_key(fleet.keys, fleet.size * NUM_STREAMS), now)
+    kept = at(fleet.noise, fleet.size * NUM_SENSORS * NOISE_WIDTH)
+    return noise_of_reading(kept, get_key(fleet.keys, fleet.size * NUM_STREAMS), now * 1.0, 1.0, now * 1.0)
 
 
 @compiled

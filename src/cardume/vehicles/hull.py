@@ -86,8 +86,8 @@ def acceleration(hull: Hull, velocity: Velocity, push: Push) -> Velocity:
     Returns:
         The rate of change of the velocity.
 
-    Source: Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, maneuvering model in
-    relative velocity, with diagonal mass and damping.
+    Source: dsor-isr/farol, `AUV.cpp` (updateDynamics, computeCoriolisMatrix) with roll and pitch zero; the
+    Coriolis matrix is that of MSS `GNC/m2c.m`.
     """
     u, v, w, r = velocity
     return Velocity(

@@ -74,7 +74,8 @@ def kinematic(
     Returns:
         The state after the step.
 
-    Source: paper eq. (1); the lag is row F of its analysis, e = -sigma d tan(T u |c| / (1 - c e)).
+    Source: paper eq. (1). A lag in heading shifts an arc flown by line of sight outwards by the e of
+    e = -sigma d tan(T u |c| / (1 - c e)).
     """
     wanted = unwrap_near(reference.heading, vessel.heading)
     headings = approached(vessel.heading, wanted, heading_time_constant, dt)

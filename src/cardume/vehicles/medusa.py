@@ -168,7 +168,8 @@ def medusa(
         horizontal thrusters alike would push as much, so that (37) reads the thrust rightly also while
         they differ to turn: n |n| = (n_port |n_port| + n_starboard |n_starboard|) / 2.
 
-    Source: dsor-isr/farol, `auv_sim` and the sim.yaml of its MEDUSA vehicles; the numbers in `medusa_data`.
+    Source: dsor-isr/farol, `AUV.cpp` (applyThrustersModel, updateDynamics) and the sim.yaml of its MEDUSA
+    vehicles, whose numbers stand in `medusa_data`.
     """
     surge_mass, sway_mass = mass + surge_added_mass, mass + sway_added_mass
     per_surge, per_sway = 1.0 / surge_mass, 1.0 / sway_mass

@@ -1,10 +1,11 @@
 """Crab: turn the heading into the current so that the course is the wanted one."""
 
+from typing import Annotated
+
 from cardume.laws import Bounds, MetersPerSecond, Number, Positive
 from cardume.maths import asin, atan2, clip, hypot, sincos
 from cardume.onboard.compensation.base import Steering, compensation_law
 from cardume.signals import Course, Motion
-from typing import Annotated
 
 LIMIT = 0.98  # of a right angle's sine: still 20 % of the speed along the course
 

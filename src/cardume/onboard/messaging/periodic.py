@@ -7,9 +7,7 @@ from cardume.signals import Outbox
 
 
 @messaging_law
-def periodic(
-    outbox: Outbox, dt: Seconds, period: Positive[Seconds] = 1.0, offset: NotNegative[Seconds] = 0.0
-) -> float:
+def periodic(outbox: Outbox, dt: Seconds, period: Positive[Seconds] = 1.0, offset: NotNegative[Seconds] = 0.0) -> float:
     """Send when the period has passed since the last sending.
 
     send = t - t_last >= period and t >= offset, to half a tick

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from cardume.compiler import compiled, some
-from cardume.signals import Noise
 from cardume.maths.gauss_markov import gauss_markov
+from cardume.signals import Noise
 
 __all__ = ["Variation", "vary"]
 

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 from cardume.compiler import some, where
 from cardume.laws import Meters, NotNegative, Positive, Seconds
-from cardume.signals import NOTHING, GnssReading, Noise, Sampling, VesselState
 from cardume.maths.gauss_markov import gauss_markov
+from cardume.signals import NOTHING, GnssReading, Noise, Sampling, VesselState
 from cardume.world.sensors.base import gnss_sensor
 
 

@@ -6,9 +6,7 @@ from cardume.world.sensors.base import thruster_speed_sensor
 
 
 @thruster_speed_sensor(period=0.1)
-def thruster_speed(
-    truth: VesselState, noise: Noise, sigma: NotNegative[Number] = 0.005
-) -> RadiansPerSecond:
+def thruster_speed(truth: VesselState, noise: Noise, sigma: NotNegative[Number] = 0.005) -> RadiansPerSecond:
     """True shaft speed with noise in proportion to it.
 
     reading = n (1 + sigma w)

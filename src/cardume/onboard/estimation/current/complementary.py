@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 from cardume.compiler import where
 from cardume.laws import PerSecond, PerSecondSquared, Positive, Seconds
-from cardume.maths import to_ned
 from cardume.onboard.estimation.current.base import current_observer_law
 from cardume.signals import Motion, NavigationEstimate, Water
 
@@ -38,7 +37,7 @@ def complementary(
 
     Args:
         position: p_m, measured or believed position [m].
-        motion: heading [rad] and velocity through the water [m/s], V_m = R(psi) (u, v).
+        motion: velocity through the water [m/s], V_m = R(psi) (u, v).
         memory: p_hat and Vc_hat.
         dt: [s] tick.
         k1: [1/s] > 0.
@@ -52,12 +51,11 @@ def complementary(
     first = memory.started < 0.5
     north = where(first, position.north, memory.north)
     east = where(first, position.east, memory.east)
-    water_north, water_east = to_ned(motion.heading, motion.surge, motion.sway)
     north_error, east_error = position.north - north, position.east - east
     after = Observed(
         1.0,
-        north + dt * (k1 * north_error + water_north + memory.current_north),
-        east + dt * (k1 * east_error + water_east + memory.current_east),
+        north + dt * (k1 * north_error + motion.north + memory.current_north),
+        east + dt * (k1 * east_error + motion.east + memory.current_east),
         memory.current_north + dt * k2 * north_error,
         memory.current_east + dt * k2 * east_error,
     )

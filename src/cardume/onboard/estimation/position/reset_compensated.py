@@ -28,9 +28,7 @@ class Track(NamedTuple):
 
 
 @position_law
-def reset_compensated(
-    fix: Fix, motion: Motion, memory: Track, dt: Seconds
-) -> tuple[NavigationEstimate, Track]:
+def reset_compensated(fix: Fix, motion: Motion, memory: Track, dt: Seconds) -> tuple[NavigationEstimate, Track]:
     """Reset the position that was believed when the fix was valid, and keep the way made since.
 
     p_hat(t) = fix + p_dr(t) - p_dr(t - age)

@@ -1,0 +1,1 @@
+"""How fast cardume is: `make bench`, or `python -m benchmarks --help`."""

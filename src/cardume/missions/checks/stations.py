@@ -1,0 +1,140 @@
+"""Where along its path a vehicle will be within the mission, and what the water does there."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cardume.paths import table
+from cardume.simulation.plan import Choice, Plan
+from cardume.world.currents import water_at
+
+FINEST_TURN = math.radians(5.0)
+LONGEST_STEP = 25.0  # [m]
+MOST_IN_SEGMENT = 720  # ten laps of a circle
+MOST_LOOKED_UP = 300  # places in a gridded current
+SIGMAS = 2.0  # of a current's variation that a mission is to withstand
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stations:
+    """Points along a vehicle's own path, in the order in which it comes there; each (n,).
+
+    Attributes:
+        state: [m] the vehicle's coordination state.
+        time: [s] at the formation's speed, from the start of the path.
+        north, east: [m]
+        course: [rad] of the path.
+        curvature: [1/m] of its own path.
+        stretch: [-] own path per reference path.
+        speed: [m/s] v_L on the reference path.
+        along, across: [m/s] the mean current along and to starboard of the course.
+        doubt: [m/s] how much more the current's variation may bring, in any direction.
+    """
+
+    state: np.ndarray
+    time: np.ndarray
+    north: np.ndarray
+    east: np.ndarray
+    course: np.ndarray
+    curvature: np.ndarray
+    stretch: np.ndarray
+    speed: np.ndarray
+    along: np.ndarray
+    across: np.ndarray
+    doubt: float
+
+    @property
+    def current_speed(self) -> np.ndarray:
+        """Speed of the mean current at each station (n,) [m/s]."""
+        speed: np.ndarray = np.hypot(self.along, self.across)
+        return speed
+
+
+def stations_of(path: np.ndarray, duration: float) -> Stations:
+    """Stations in still water.
+
+    Args:
+        path: (n,) [any] path table of the vehicle.
+        duration: [s] of the mission; what lies further is left out.
+    """
+    parts, time = [], 0.0
+    for row in path[table.HEADER_WIDTH :].reshape(-1, table.SEGMENT_WIDTH):
+        if time > duration:
+            break
+        speed = row[table.STRETCH] * row[table.SPEED]
+        parts.append(_along_segment(row, min(row[table.LENGTH], (duration - time) * speed), time, speed))
+        time += row[table.LENGTH] / speed
+    values = np.concatenate(parts, axis=1)
+    state, when, north, east, course, curvature, stretch, profile = values
+    still = np.zeros(len(state))
+    return Stations(
+        state=state - path[table.AHEAD],
+        time=when,
+        north=north,
+        east=east,
+        course=course,
+        curvature=curvature,
+        stretch=stretch,
+        speed=profile,
+        along=still,
+        across=still,
+        doubt=0.0,
+    )
+
+
+def _along_segment(row: np.ndarray, length: float, time: float, speed: float) -> np.ndarray:
+    curvature = row[table.CURVATURE]
+    finest = max(abs(curvature) * length / FINEST_TURN, length / LONGEST_STEP, 1.0)
+    s = np.linspace(0.0, length, min(math.ceil(finest), MOST_IN_SEGMENT) + 1)
+    turned = curvature * s
+    ahead, aside = (np.sin(turned) / curvature, (1.0 - np.cos(turned)) / curvature) if curvature else (s, 0.0 * s)
+    sine, cosine = row[table.SIN_COURSE], row[table.COS_COURSE]
+    same = np.ones(len(s))
+    return np.array(
+        [
+            row[table.REFERENCE_START] + s * row[table.REFERENCE_RATE],
+            time + s / speed,
+            row[table.START_NORTH] + ahead * cosine - aside * sine,
+            row[table.START_EAST] + ahead * sine + aside * cosine,
+            row[table.START_COURSE] + turned,
+            curvature * same,
+            row[table.STRETCH] * same,
+            row[table.SPEED] * same,
+        ]
+    )
+
+
+def in_current(stations: Stations, plan: Plan, water: Choice, depth: float) -> Stations | None:
+    """The stations with the mission's current; None where the current is a user's own law.
+
+    Args:
+        stations: in still water.
+        plan: holds the table of a gridded current.
+        water: the law of the current.
+        depth: [m] of the vehicle.
+    """
+    if water.law.name == "uniform":
+        towards, speed = water.value("towards"), water.value("speed")
+        north = np.full(len(stations.course), speed * math.cos(towards))
+        east = np.full(len(stations.course), speed * math.sin(towards))
+    elif water.law.name == "gridded":
+        stations = _thinned(stations)
+        places = zip(stations.north, stations.east, stations.time, strict=True)
+        north, east = np.array([water_at(plan.field, n, e, depth, t) for n, e, t in places], float).T
+    else:
+        return None
+    sine, cosine = np.sin(stations.course), np.cos(stations.course)
+    along, across = north * cosine + east * sine, east * cosine - north * sine
+    doubt = SIGMAS * water.value("variation_sigma")
+    known = replace(stations, along=np.nan_to_num(along), across=np.nan_to_num(across), doubt=doubt)
+    return known
+
+
+def _thinned(stations: Stations) -> Stations:
+    count = len(stations.time)
+    if count <= MOST_LOOKED_UP:
+        return stations
+    kept = np.unique(np.linspace(0, count - 1, MOST_LOOKED_UP).round().astype(int))
+    arrays = {name: value[kept] for name, value in vars(stations).items() if isinstance(value, np.ndarray)}
+    return replace(stations, **arrays)
