@@ -19,7 +19,9 @@ DT = 0.05  # [s]
 
 
 @njit(nogil=True, cache=True, error_model="numpy")
-def _rates(heading, surge, sway, yaw_rate, thrust, moment):
+def _rates(
+    heading: float, surge: float, sway: float, yaw_rate: float, thrust: float, moment: float
+) -> tuple[float, float, float, float, float, float]:
     north = surge * math.cos(heading) - sway * math.sin(heading)
     east = surge * math.sin(heading) + sway * math.cos(heading)
     forward = (thrust + 40.0 * sway * yaw_rate - (0.2 + 25.0 * abs(surge)) * surge) / 37.0

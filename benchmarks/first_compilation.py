@@ -3,7 +3,7 @@
 import json
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from benchmarks.calibration import Taken, clock
 from benchmarks.process import run_process
@@ -45,7 +45,10 @@ def _compile() -> None:
     from cardume.simulation.warming import warm_up
 
     plan = make_plan(open_mission(MISSION), catalog()).plan
-    builds = {"scalar": lambda: warm_up(plan), "lanes": lambda: compile_lanes(plan, lambda text, done, total: None)}
+    builds: dict[str, Callable[[], object]] = {
+        "scalar": lambda: warm_up(plan),
+        "lanes": lambda: compile_lanes(plan, lambda text, done, total: None),
+    }
     taken: list[Taken] = []
     for compile_build in builds.values() if HAS_LANES else [builds["scalar"]]:
         with clock(taken):

@@ -40,7 +40,7 @@ def show(console: Console, rows: Sequence[Row], record: dict[str, Any]) -> None:
     loop = record["calibration"]
     console.print(MEANING, highlight=False, markup=False)
     console.print(
-        f"calibration loop: {loop['best_ms']:.2f} ms of processor time at best, {loop['median_ms']:.2f} ms in the middle,"
+        f"calibration loop: {loop['best_ms']:.2f} ms of processor time at best, {loop['median_ms']:.2f} ms median,"
         f" by the clock {loop['waiting']:.2f} times that;"
         f" Python {record['python']} on {record['num_cpus']} processors ({record['machine']}),"
         f" commit {record['commit'] or 'unknown'}, sources {record['sources']}",

@@ -26,7 +26,6 @@ from cardume.compiler.calls import (
     define_verb,
     law_answer,
     law_signature,
-    record_type,
 )
 from cardume.compiler.compiled import cached, source_stamp
 from cardume.compiler.reach import fingerprint, is_recursive, with_compiled_helpers
@@ -208,7 +207,8 @@ class Law:
 
     def __init__(self, family: Family, function: Callable[..., Any], common: dict[str, float]) -> None:
         self.family, self.function, self.name = family.name, function, function.__name__
-        self.common, self._family, self._handles = common, family, {}
+        self.common, self._family = common, family
+        self._handles: dict[bool, int] = {}
         self.doc = inspect.getdoc(function) or ""
         self.memory_type: Any = None
         self.parameters: tuple[Parameter, ...] = ()
@@ -474,29 +474,3 @@ def family(name: str) -> Family:
 def laws_of(name: str) -> dict[str, Law]:
     """The built-in laws of one family."""
     return dict(_families[name].laws)
-
-
-__all__ = [
-    "COLUMNS",
-    "FAMILIES",
-    "Bounds",
-    "Law",
-    "LawBook",
-    "LawError",
-    "Length",
-    "Meters",
-    "MetersPerSecond",
-    "Number",
-    "Parameter",
-    "Positive",
-    "Probability",
-    "Radians",
-    "Seconds",
-    "Unit",
-    "all_families",
-    "family",
-    "law_family",
-    "laws_of",
-    "record_type",
-    "sensor_family",
-]

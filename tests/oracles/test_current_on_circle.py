@@ -72,7 +72,7 @@ def test_e_swing_at_the_printed_parameters(turn: str, sigma: float) -> None:
 
 @TURNS
 def test_e_mean_at_the_printed_parameters(turn: str, sigma: float) -> None:
-    """Row E: over a lap the mean is -0.00408834 sigma m; the table's -0.01047242 is that of no whole lap."""
+    """Row E: over a lap the mean is -0.00408834 sigma m, not the table's -0.01047242."""
     _, expected, lap = lap_of(0.5, 5.0, 30.0, sigma, 0.05)
     assert expected == pytest.approx(-0.00408834 * sigma, abs=1e-8)
     scene, settling = circling(0.5, 5.0, 30.0, turn, 0.05)

@@ -24,6 +24,9 @@ vehicles:
     sensors:
       ahrs: {{heading_sigma: 0 deg, yaw_rate_sigma: 0 deg/s, attitude_sigma: 0 deg, period: {tick!r} s}}
       dvl: {{sigma: 0 m/s, period: {tick!r} s}}
+      gnss: none
+      depth: none
+      thruster_speed: none
 guidance: {{law: line_of_sight}}
 position: {{law: {position}}}
 """

@@ -193,6 +193,7 @@ vehicles:
       gnss: {{sigma: 0 m, period: {tick!r} s}}
       ahrs: {{heading_sigma: 0 deg, yaw_rate_sigma: 0 deg/s, attitude_sigma: 0 deg, period: {tick!r} s}}
       thruster_speed: {{sigma: 0, reader: proportional, scale: {scale!r}, period: {tick!r} s}}
+      depth: none
 guidance: {{law: line_of_sight}}
 position: {{law: direct}}
 current_observer: {{law: complementary, k1: {k1!r}, k2: {k2!r}}}

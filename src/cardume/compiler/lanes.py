@@ -52,7 +52,7 @@ LANES, MASK, LANE_BITS = LanesType(), MaskType(), LaneBitsType()
 
 def _register(kind: type[types.Type], vector: ir.VectorType) -> None:
     @register_model(kind)
-    class _Model(models.PrimitiveModel):  # type: ignore[misc]
+    class _Model(models.PrimitiveModel):
         def __init__(self, manager: Any, fe_type: Any) -> None:
             super().__init__(manager, fe_type, vector)
 

@@ -23,7 +23,7 @@ def primitive(function: Callable[..., Any], typer: Callable[..., Any]) -> Callab
         A decorator for generate(context, builder, signature, arguments) -> LLVM value.
     """
 
-    class Template(AbstractTemplate):  # type: ignore[misc]
+    class Template(AbstractTemplate):
         key = function
 
         def generic(self, arguments: Any, keywords: Any) -> Any:

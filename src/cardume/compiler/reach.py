@@ -71,7 +71,7 @@ def fingerprint(function: Callable[..., Any]) -> str:
         elif isinstance(value, np.ndarray):
             digest.update(value.tobytes())
         elif isinstance(value, type) and hasattr(value, "_fields"):
-            digest.update(repr((value._fields, value._field_defaults)).encode())
+            digest.update(repr((value._fields, getattr(value, "_field_defaults", {}))).encode())
         elif isinstance(value, tuple):
             for part in value:
                 add(part, scope)

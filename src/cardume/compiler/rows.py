@@ -23,7 +23,7 @@ from cardume.compiler.primitive import primitive
 Rows = np.ndarray  # (k,) float64; how laws and records annotate a table
 
 
-class SharedRows(np.ndarray):  # type: ignore[type-arg]
+class SharedRows(np.ndarray):
     """Annotates a table that is the same in all lanes."""
 
 
@@ -56,18 +56,18 @@ class IntsType(types.Type):
 
 
 ROWS, FLAT_ROWS, LANE_ROWS, INTS = RowsType(), FlatRowsType(), LaneRowsType(), IntsType()
-ELEMENTS = {ROWS: types.float64, FLAT_ROWS: types.float64, LANE_ROWS: LANES, INTS: types.int64}
+ELEMENTS: dict[Any, Any] = {ROWS: types.float64, FLAT_ROWS: types.float64, LANE_ROWS: LANES, INTS: types.int64}
 
 
 @register_model(RowsType)
-class _RowsModel(models.StructModel):  # type: ignore[misc]
+class _RowsModel(models.StructModel):
     def __init__(self, manager: Any, fe_type: Any) -> None:
         super().__init__(manager, fe_type, [("data", types.CPointer(types.float64)), ("stride", types.int64)])
 
 
 def _register_pointer(kind: type[types.Type], pointee: Any) -> None:
     @register_model(kind)
-    class _Model(models.PrimitiveModel):  # type: ignore[misc]
+    class _Model(models.PrimitiveModel):
         def __init__(self, manager: Any, fe_type: Any) -> None:
             super().__init__(manager, fe_type, pointee.as_pointer())
 
@@ -102,7 +102,7 @@ def rows_of(array: np.ndarray) -> Rows:
 
 
 def _rows_type(array: Any) -> Any:
-    kinds = {(1, types.float64): FLAT_ROWS, (2, types.float64): LANE_ROWS, (1, types.int64): INTS}
+    kinds: dict[Any, Any] = {(1, types.float64): FLAT_ROWS, (2, types.float64): LANE_ROWS, (1, types.int64): INTS}
     return kinds[array.ndim, array.dtype](array)
 
 

@@ -4,7 +4,7 @@ import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from cardume.missions.currents import Window, explain_coverage, read_current
 from cardume.missions.formats import read_plan
 from cardume.missions.geodesy import GeoPoint
 from cardume.missions.mission import Mission
-from cardume.missions.route import AnyPath, ArcPath, CirclePath, FilePath, LawnmowerPath, LinePath
+from cardume.missions.route import ArcPath, CirclePath, FilePath, LawnmowerPath, LinePath
 from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
 from cardume.onboard.mind import Setup
 from cardume.paths.arc import arc
@@ -25,7 +25,7 @@ from cardume.paths.line import line
 from cardume.paths.offset import offset_path
 from cardume.paths.outline import outline
 from cardume.paths.projection import point_at
-from cardume.paths.segment import GeometryError, ReferencePath, Start
+from cardume.paths.segment import GeometryError, ReferencePath, Start, Turn
 from cardume.paths.segments import ArcPiece, LinePiece, segments
 from cardume.paths.table import PathPlace, start_at
 from cardume.signals import Command, Reference, VesselState, Water
@@ -100,16 +100,18 @@ def _reference_path(mission: Mission, origin: GeoPoint | None) -> tuple[Referenc
     return _positioned(mission, "path", lambda: _drawn_path(mission.path)), origin
 
 
-def _drawn_path(path: AnyPath) -> ReferencePath:
+def _drawn_path(path: Any) -> ReferencePath:
     if isinstance(path, CirclePath):
-        return circle(Center(path.centre.north, path.centre.east), path.radius, path.turn, path.start_bearing)
+        return circle(
+            Center(path.centre.north, path.centre.east), path.radius, cast(Turn, path.turn), path.start_bearing
+        )
     start = Start(path.start.north, path.start.east, path.start.course)
     if isinstance(path, LinePath):
         return line(start, path.length)
     if isinstance(path, ArcPath):
-        return arc(start, path.radius, path.turn, path.angle)
+        return arc(start, path.radius, cast(Turn, path.turn), path.angle)
     if isinstance(path, LawnmowerPath):
-        return lawnmower(start, path.leg, path.legs, path.spacing, path.turn)
+        return lawnmower(start, path.leg, path.legs, path.spacing, cast(Turn, path.turn))
     pieces = [
         LinePiece(line=piece.line, speed=piece.speed)
         if hasattr(piece, "line")
@@ -122,7 +124,8 @@ def _drawn_path(path: AnyPath) -> ReferencePath:
 def _own_path(mission: Mission, vehicle: Vehicle, reference: ReferencePath, speed: float) -> np.ndarray:
     key = f"vehicles.{vehicle.name}.offset.starboard"
     offset = vehicle.offset
-    return _positioned(mission, key, lambda: offset_path(reference, offset.starboard, offset.ahead, speed))
+    table: np.ndarray = _positioned(mission, key, lambda: offset_path(reference, offset.starboard, offset.ahead, speed))
+    return table
 
 
 def _current(
@@ -149,7 +152,7 @@ def _current(
     points = [outline(path, 20.0)[:, 1:] for path in paths]
     depths = [np.full((len(p), 1), v.depth) for p, v in zip(points, mission.vehicles, strict=True)]
     try:
-        field = read_current(texts["file"], window=window, east=texts["east"], north=texts["north"])
+        field = read_current(str(texts["file"]), window=window, east=texts["east"], north=texts["north"])
         rows = field.to_rows(origin)
         uncovered = explain_coverage(field, origin, np.hstack([np.concatenate(points), np.concatenate(depths)]))
     except DataError as problem:

@@ -77,7 +77,13 @@ def guide(mind: Mind, error: PathError) -> float:
 
 @compiled
 def progress(mind: Mind, error: PathError, correction: float) -> float:
-    """Desired speed along the path [m/s], h (v_L + correction), never astern; past the end, back to it."""
+    """Desired speed along the path [m/s], h (v_L + correction), never astern; past the end, back to it.
+
+    Args:
+        mind: of the vehicle.
+        error: where it is on its path.
+        correction: [m/s] of coordination.
+    """
     along = clip(error.stretch * (error.speed_profile + correction), 0.0, 1e9)
     stays = _stays(mind, error)
     if some(stays):

@@ -113,7 +113,17 @@ def look_around(
 
 @compiled
 def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, valid: float, error: PathError) -> None:
-    """Note where a vehicle was seen, and how far along its path that is."""
+    """Note where a vehicle was seen, and how far along its path that is.
+
+    Args:
+        mind: of the one who saw.
+        vehicle: who was seen.
+        is_new: [-] whether it was, in each lane.
+        north: [m]
+        east: [m]
+        valid: [s] when.
+        error: where the one who saw is on its own path.
+    """
     known = get_acquaintance(mind.others, vehicle)
     found = find_reference_point(
         mind.book,
@@ -168,7 +178,14 @@ def _agreement(error: PathError) -> Disagreement:
 
 @compiled
 def disagreement_of(mind: Mind, vehicle: int, state: float, own_state: float) -> Disagreement:
-    """(D^-1 L gamma)_i: a state less the mean of those the vehicle hears and of whom anything is known."""
+    """(D^-1 L gamma)_i: a state less the mean of those the vehicle hears and of whom anything is known.
+
+    Args:
+        mind: whose view it is.
+        vehicle: i.
+        state: [m] its coordination state.
+        own_state: [m] that of the one whose view it is.
+    """
     listed = neighbors_of(mind, vehicle)
     total, count = 0.0 * own_state, 0.0 * own_state
     for k in range(1, load(listed, 0) + 1):

@@ -118,7 +118,7 @@ class Fleet(NamedTuple):
     path_starts: Any  # Ints (vehicle,)
     graph: Any  # Ints (vehicle, list) neighbors, then known, then sources
     list_width: int
-    field: Rows  # gridded current, the same in all lanes
+    field: Any  # SharedRows: gridded current, the same in all lanes
     air: Air
     scores: Rows  # (vehicle, the records of SCORES)
     fleet_score: Rows  # FleetScore
@@ -149,7 +149,7 @@ class Tables(NamedTuple):
     """The same as numpy arrays; field by field what `Fleet` and `Air` hold."""
 
     whole: Whole
-    tick: float
+    tick: float  # [s]
     handles: np.ndarray
     gains: np.ndarray
     memory: np.ndarray

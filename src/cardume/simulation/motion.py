@@ -35,7 +35,14 @@ def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water) -> Vess
 
 @compiled
 def feedback_of(held: Held, surge: float, reference: Reference, ahead: float) -> Feedback:
-    """What the autopilot sees `ahead` seconds after the tick."""
+    """What the autopilot sees some time after the tick.
+
+    Args:
+        held: what the sensors said in the tick.
+        surge: [m/s] believed.
+        reference: what is asked of it.
+        ahead: [s] since the tick.
+    """
     yaw_rate = where(held.yaw_rate == held.yaw_rate, held.yaw_rate, 0.0)
     return Feedback(
         held.heading + yaw_rate * ahead,

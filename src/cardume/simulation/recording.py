@@ -18,51 +18,51 @@ from cardume.simulation.fleet import Fleet, get_on_path, get_reference, get_vess
 class Truth(NamedTuple):
     """What is true of a vehicle, as it is logged."""
 
-    north: float
-    east: float
-    depth: float
-    heading: float
-    surge: float
-    sway: float
-    yaw_rate: float
-    course: float
-    speed: float
-    current_north: float
-    current_east: float
-    cross_track: float
-    along_track: float
-    path_course: float
-    curvature: float
-    coordination_state: float
-    shaft_speed: float
-    thrust: float
-    yaw_moment: float
+    north: float  # [m]
+    east: float  # [m]
+    depth: float  # [m]
+    heading: float  # [rad]
+    surge: float  # [m/s]
+    sway: float  # [m/s]
+    yaw_rate: float  # [rad/s]
+    course: float  # [rad]
+    speed: float  # [m/s]
+    current_north: float  # [m/s]
+    current_east: float  # [m/s]
+    cross_track: float  # [m]
+    along_track: float  # [m]
+    path_course: float  # [rad]
+    curvature: float  # [1/m]
+    coordination_state: float  # [m]
+    shaft_speed: float  # [rad/s]
+    thrust: float  # [N]
+    yaw_moment: float  # [N m]
 
 
 class Thought(NamedTuple):
     """What it believes and wants, as it is logged."""
 
-    north_estimate: float
-    east_estimate: float
-    current_north_estimate: float
-    current_east_estimate: float
-    cross_track_estimate: float
-    coordination_state_estimate: float
-    course_desired: float
-    heading_desired: float
-    speed_desired: float
-    speed_correction: float
+    north_estimate: float  # [m]
+    east_estimate: float  # [m]
+    current_north_estimate: float  # [m/s]
+    current_east_estimate: float  # [m/s]
+    cross_track_estimate: float  # [m]
+    coordination_state_estimate: float  # [m]
+    course_desired: float  # [rad]
+    heading_desired: float  # [rad]
+    speed_desired: float  # [m/s]
+    speed_correction: float  # [m/s]
 
 
 class MessageRow(NamedTuple):
     """One message to one receiver."""
 
-    time_sent: float
-    time_received: float
-    sender: float
-    receiver: float
-    lost: float
-    time_of_validity: float
+    time_sent: float  # [s]
+    time_received: float  # [s] NaN: lost
+    sender: float  # [-] place in the fleet
+    receiver: float  # [-]
+    lost: float  # [-]
+    time_of_validity: float  # [s]
 
 
 LOG, MESSAGE_LOG = Layout(Truth, Thought), Layout(MessageRow)
@@ -146,7 +146,17 @@ def write_predictions(fleet: Fleet, row: int, vehicle: int) -> None:
 def write_message(
     fleet: Fleet, sent: float, received: float, sender: int, receiver: int, lost: float, validity: float
 ) -> None:
-    """Log what became of a message on its way to one receiver, while there is room."""
+    """Log what became of a message on its way to one receiver, while there is room.
+
+    Args:
+        fleet: the mission.
+        sent: [s]
+        received: [s] NaN when it was lost.
+        sender: place in the fleet.
+        receiver: place in the fleet.
+        lost: [-] 1 when it was lost.
+        validity: [s] of what it says.
+    """
     index = load(fleet.counts, MESSAGES)
     if index < load(fleet.counts, MESSAGE_ROOM):
         store(fleet.counts, MESSAGES, index + 1)

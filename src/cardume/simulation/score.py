@@ -66,8 +66,8 @@ class Formation(NamedTuple):
 class Talk(NamedTuple):
     """Messages of one vehicle."""
 
-    sent: float = 0.0
-    delivered: float = 0.0  # to it
+    sent: float = 0.0  # [-]
+    delivered: float = 0.0  # [-] to it
     age_sum: float = 0.0  # [s] of information, when it arrived
     age_max: float = 0.0  # [s]
 
@@ -152,7 +152,15 @@ def believed_errors(fleet: Fleet, vehicle: int, vessel: VesselState) -> tuple[fl
 
 @compiled
 def tally(fleet: Fleet, vehicle: int, histogram: int, size: float, counts: bool) -> None:
-    """Add one to the bin of an error, finer for small errors."""
+    """Add one to the bin of an error, finer for small errors.
+
+    Args:
+        fleet: the mission.
+        vehicle: whose error it is.
+        histogram: CROSS_TRACK or FORMATION.
+        size: [m] of the error.
+        counts: [-] whether it does, in each lane.
+    """
     bins = at(fleet.histograms, (vehicle * HISTOGRAMS + histogram) * BINS)
     index = clip(floor(BINS * (size / (1.0 + size))), 0.0, BINS - 1.0)
     index = where(counts & (index == index), index, 0.0)
@@ -172,7 +180,14 @@ def note_sent(fleet: Fleet, vehicle: int, sends: bool) -> None:
 
 @compiled
 def note_heard(fleet: Fleet, vehicle: int, here: bool, age: float) -> None:
-    """Count a message that reached a vehicle, and how old its news was."""
+    """Count a message that reached a vehicle, and how old its news was.
+
+    Args:
+        fleet: the mission.
+        vehicle: the receiver.
+        here: [-] whether it arrived, in each lane.
+        age: [s] of what it says.
+    """
     talk = get_talk(fleet.scores, vehicle)
     after = Talk(talk.sent, talk.delivered + 1.0, talk.age_sum + age, where(age > talk.age_max, age, talk.age_max))
     put_talk(fleet.scores, vehicle, where(here, after, talk))
@@ -206,7 +221,12 @@ def score_fleet(fleet: Fleet) -> None:
 
 @compiled
 def nearest_pair(fleet: Fleet, nearest: float) -> float:
-    """The smallest squared distance so far between two vehicles [m^2]."""
+    """The smallest squared distance so far between two vehicles [m^2].
+
+    Args:
+        fleet: the mission.
+        nearest: [m^2] until now.
+    """
     for one in range(fleet.size):
         here = get_vessel(fleet.vehicles, one)
         for other in range(one):
@@ -219,7 +239,13 @@ def nearest_pair(fleet: Fleet, nearest: float) -> float:
 
 @compiled
 def score_formation(fleet: Fleet, mean_state: float, counts: bool) -> None:
-    """Distance of each vehicle from the point of its own path at the fleet's mean coordination state."""
+    """Distance of each vehicle from the point of its own path at the fleet's mean coordination state.
+
+    Args:
+        fleet: the mission.
+        mean_state: [m] of the fleet.
+        counts: [-] whether this tick does, in each lane.
+    """
     north, east = 0.0 * mean_state, 0.0 * mean_state
     for vehicle in range(fleet.size):
         path = at(fleet.paths, load(fleet.path_starts, vehicle))

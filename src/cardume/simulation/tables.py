@@ -120,13 +120,13 @@ def join(tables: Sequence[Tables]) -> Tables:
         parts = [getattr(t, name) for t in full]
         is_shared = name == "field" or not isinstance(parts[0], np.ndarray) or parts[0].dtype == np.int64
         joined.append(getattr(first, name) if is_shared else np.ascontiguousarray(np.stack(parts, axis=-1)))
-    return Tables(*joined)
+    return Tables._make(joined)
 
 
 def lane(tables: Tables, which: int) -> Tables:
     """One mission out of eight."""
     parts = [getattr(tables, name) for name in Tables._fields]
-    return Tables(*[np.ascontiguousarray(p[:, which]) if np.ndim(p) == 2 else p for p in parts])
+    return Tables._make(np.ascontiguousarray(p[:, which]) if np.ndim(p) == 2 else p for p in parts)
 
 
 def _row(layout: Layout, *records: Any) -> np.ndarray:
@@ -250,15 +250,15 @@ def _graph(plan: Plan, vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, int
     hears = np.asarray(plan.hears)[np.ix_(plan.order, plan.order)] != 0.0
     np.fill_diagonal(hears, False)
     size = len(vehicles)
-    neighbors = [list(np.flatnonzero(row)) for row in hears]
+    neighbors: list[list[int]] = [np.flatnonzero(row).tolist() for row in hears]
     known = [sorted({*n, *(k for j in n for k in neighbors[j])} - {i}) for i, n in enumerate(neighbors)]
     sharers = {k for k, v in enumerate(vehicles) if v.setup.shares_sightings > 0.5}
     sources = [sorted({*n, *sharers} - {i}) for i, n in enumerate(neighbors)]
     width = 1 + max(len(x) for lists in (neighbors, known, sources) for x in lists)
     table = np.zeros((3, size, width), np.int64)
-    for block, lists in zip(table, (neighbors, known, sources), strict=True):
-        for row, members in zip(block, lists, strict=True):
-            row[0], row[1 : 1 + len(members)] = len(members), members
+    for kind, lists in enumerate((neighbors, known, sources)):
+        for vehicle, members in enumerate(lists):
+            table[kind, vehicle, : 1 + len(members)] = [len(members), *members]
     return table.ravel(), width, max(len(x) for x in sources)
 
 

@@ -11,11 +11,11 @@ from cardume.signals import Motion, NavigationEstimate, Water
 class Observed(NamedTuple):
     """Where the observer thinks the vehicle is, and the current that explains it."""
 
-    started: float = 0.0
-    north: float = 0.0
-    east: float = 0.0
-    current_north: float = 0.0
-    current_east: float = 0.0
+    started: float = 0.0  # [-] 1 after the first step
+    north: float = 0.0  # [m]
+    east: float = 0.0  # [m]
+    current_north: float = 0.0  # [m/s]
+    current_east: float = 0.0  # [m/s]
 
 
 @current_observer_law

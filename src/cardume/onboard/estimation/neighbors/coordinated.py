@@ -11,7 +11,7 @@ from cardume.signals import NeighborReport
 class Predicted(NamedTuple):
     """The neighbor's coordination state at the next tick."""
 
-    state: float = 0.0
+    state: float = 0.0  # [m]
 
 
 @neighbor_law

@@ -10,8 +10,8 @@ from cardume.signals import Fix, NavigationEstimate
 class LastFix(NamedTuple):
     """The last fix."""
 
-    north: float = 0.0
-    east: float = 0.0
+    north: float = 0.0  # [m]
+    east: float = 0.0  # [m]
 
 
 @position_law

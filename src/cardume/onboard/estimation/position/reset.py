@@ -12,8 +12,8 @@ from cardume.signals import Fix, Motion, NavigationEstimate
 class Reckoned(NamedTuple):
     """Where the vehicle will be at the next tick, unless a fix says otherwise."""
 
-    north: float = 0.0
-    east: float = 0.0
+    north: float = 0.0  # [m]
+    east: float = 0.0  # [m]
 
 
 @position_law

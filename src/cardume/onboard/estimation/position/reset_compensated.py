@@ -18,11 +18,11 @@ REMEMBERED = 256  # ticks; an older fix is taken for as old as this
 class Track(NamedTuple):
     """Dead reckoning that no fix touches, its recent past, and what the last fix adds to it."""
 
-    north: float = 0.0
-    east: float = 0.0
-    tick: float = 0.0
-    north_correction: float = 0.0
-    east_correction: float = 0.0
+    north: float = 0.0  # [m]
+    east: float = 0.0  # [m]
+    tick: float = 0.0  # [-]
+    north_correction: float = 0.0  # [m]
+    east_correction: float = 0.0  # [m]
     norths: Annotated[Rows, Length(REMEMBERED)] = np.zeros(REMEMBERED)
     easts: Annotated[Rows, Length(REMEMBERED)] = np.zeros(REMEMBERED)
 
