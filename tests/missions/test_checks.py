@@ -108,6 +108,9 @@ MIXED, TEAM, RING = mission([HULL, BESIDE]), mission([HEAD, DIVER], TOLD), missi
 RARE = mission([by_satellite(period=2)], TOLD)
 SCALED = mission([by_satellite(period=0.01, scale=1.25)], MEETS + quick_tick(0.01))
 LATE = mission([by_satellite(period=5, latency=5)], "position: {law: reset_compensated}\n")
+OUTER = HULL.replace("name: a", "name: b").replace("0.5 m/s}}", "0.5 m/s}, offset: {starboard: -5 m}}")
+DUO, TWO = mission([POINT, BESIDE], MEETS), mission([HULL, BESIDE], MEETS)
+ABREAST, FOLLOWING = mission([HULL, OUTER], MEETS, MOWER), ["current.speed=0.25 m/s", "current.towards=0 deg"]
 TO_AND_FRO = mission([HULL], MEETS, MOWER)
 SILENT, UNDER = "vehicles.a.messaging=none", "vehicles.b.depth=5 m"
 
@@ -126,12 +129,7 @@ CASES = [
     (ALONE, ["current.speed=0.02 m/s", "compensation=none"], "note", "compensation.law"),
     (ALONE, ["current.speed=0.2 m/s", "current_observer=none"], "warning", "current_observer.law"),
     (ALONE, ["current.variation_sigma=0.3 m/s", "speed_reference=water"], "warning", "current.variation_sigma"),
-    (
-        mission([POINT, BESIDE], MEETS),
-        ["current.speed=0.4 m/s", "speed_reference=water"],
-        "warning",
-        "coordination.gain",
-    ),
+    (DUO, ["current.speed=0.4 m/s", "speed_reference=water"], "warning", "coordination.gain"),
     (ALONE, ["current.speed=0.6 m/s", "current.towards=0 deg"], "warning", "formation.speed"),
     (ALONE, ["current.speed=0.6 m/s", "current.towards=0 deg", "speed_reference=water"], "warning", "end"),
     (TO_AND_FRO, ["current.speed=1.2 m/s", "current.towards=0 deg"], "warning", "current.speed"),
@@ -139,6 +137,8 @@ CASES = [
     (HULLED, ["formation.speed=0.1 m/s", "current.speed=0 m/s", "duration=1 h"], "warning", "formation.speed"),
     (MIXED, ["coordination.gain=0.45 m/s"], "warning", "coordination.gain"),
     (MIXED, ["formation.speed=1.5 m/s"], "warning", "coordination.gain"),
+    (ABREAST, ["formation.speed=1.8 m/s"], "warning", "formation.speed"),  # for both, worse for the outer one
+    (TWO, ["coordination.gain=0.45 m/s", *FOLLOWING], "warning", "coordination.gain"),  # worse between than at ends
     (PAIR, ["coordination.gain=0.6 m/s"], "warning", "coordination.gain"),
     (ALONE, [*observer(10, 10), "tick=0.25 s", "log_period=1 s"], "error", "current_observer.k1"),
     (HULLED, [*observer(0.5, 0.5), "tick=0.9 s", "log_period=0.9 s"], "warning", "current_observer.k1"),
@@ -304,11 +304,14 @@ def test_a_current_that_is_told_to_be_too_strong_carries_the_vehicle_off(
         assert bool(error[-1] > error[len(error) // 2] + 1.0) is is_beaten
 
 
-def test_the_offset_that_a_current_leaves_is_the_predicted_one() -> None:
-    spoils = ["current.speed=0.2 m/s", "compensation=none", "path.length=5 km"]
+@pytest.mark.parametrize("course", [0.0, 30.0])
+def test_the_offset_that_a_current_leaves_is_the_predicted_one(course: float) -> None:
+    spoils = [f"path.start.course={course} deg", f"current.towards={course + 90.0} deg", "current.speed=0.2 m/s"]
+    spoils += ["compensation=none", "path.length=5 km"]
     assert "2.18 m off its path" in find(ALONE, "warning", "compensation.law", *spoils).message
-    assert late_error(fly(ALONE, *spoils)) == pytest.approx(2.1821789, abs=1e-4)
-    assert np.isnan(fly(ALONE, *spoils).metrics.vehicles["a"]["settling_time"])  # "never counts as settled"
+    flight = fly(ALONE, *spoils)
+    assert late_error(flight) == pytest.approx(2.1821789, abs=1e-4)
+    assert np.isnan(flight.metrics.vehicles["a"]["settling_time"])  # "never counts as settled"
 
 
 def test_a_following_current_overtakes_as_predicted() -> None:
@@ -411,6 +414,17 @@ def test_fleets_that_are_told_not_to_agree_do_not(overrides: list[str], agree: b
     assert any(finding.level == "error" for finding in findings(PAIR, ahead)) is not agree
     states = fly(PAIR, "path.length=1 km", *ahead).channels["coordination_state"][-1]
     assert bool(abs(states[0] - states[1]) < 0.1) is agree
+
+
+@pytest.mark.parametrize(("usbl", "agree"), [("{}", True), ("none", False)])
+def test_a_silent_vehicle_is_followed_where_a_third_one_sees_it_and_tells(usbl: str, agree: bool) -> None:
+    ahead = DIVER.replace("5 m}", "-5 m}, start: {along_track: 4 m}").replace("name: b", "name: c")
+    text = mission([HEAD, DIVER, ahead], TOLD, LONG)
+    overrides = ["coordination.topology=[[0, 1, 0], [0, 0, 1], [0, 0, 0]]", "vehicles.c.messaging=none"]
+    overrides += [f"vehicles.a.sensors.usbl={usbl}"]
+    assert bool(told(text, "vehicles.c.messaging", *overrides) == {"error"}) is not agree
+    states = fly(text, *overrides).channels["coordination_state"][-1]
+    assert bool(abs(states[1] - states[2]) < 1.0) is agree
 
 
 def test_predictions_in_steps_that_are_too_long_chatter() -> None:
