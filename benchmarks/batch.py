@@ -20,7 +20,7 @@ from cardume.simulation.fly import fly_batch
 from cardume.simulation.plan import Plan
 from cardume.simulation.tables import make_tables
 
-SECONDS = 30.0  # for each fleet
+SECONDS = 20.0  # for each fleet
 SCALAR_MISSIONS, LANES_MISSIONS = 16, 64
 FLEETS = {"figure-5": (), "figure-5, kinematic": KINEMATIC, "simplest laws": SIMPLEST}
 
@@ -60,6 +60,7 @@ def _row(fleet: str, build: str, threads: int, sample: Sample, steps: int, remar
         value=steps / sample.best * 1e-6,
         unit=RATE,
         median=steps / sample.median * 1e-6,
+        cpu=steps / sample.cpu * threads * 1e-6,
         ratio=sample.ratio * VEHICLE_STEPS / steps,
         remark=remark,
     )

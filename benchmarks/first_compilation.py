@@ -31,8 +31,8 @@ def measure(effort: Effort, progress: Progress) -> Iterator[Row]:
             value=taken.wall,
             unit="s",
             target=target,
+            cpu=taken.cpu,
             ratio=taken.cpu / calibration.cpu,
-            remark=f"{taken.cpu:.1f} s of processor time",
         )
 
 

@@ -31,6 +31,7 @@ class Row:
         unit: ms, s, %, or RATE; more is better only for RATE.
         target: what the figure has to reach; None: it is only reported.
         median: the middle of several, in `unit`; NaN: there was one.
+        cpu: the best in processor time, in `unit`: as if nothing else ran here.
         ratio: time in calibration loops for as many vehicle-steps; a process counts as one loop.
         remark: shown below the table.
     """
@@ -42,6 +43,7 @@ class Row:
     build: str = ""
     target: float | None = None
     median: float = math.nan
+    cpu: float = math.nan
     ratio: float = math.nan
     remark: str = ""
 
@@ -114,7 +116,7 @@ def save(record: dict[str, Any], file: Path) -> None:
 
 def rows_of(record: dict[str, Any]) -> list[Row]:
     """The figures of a run that was kept."""
-    empty = {"value": math.nan, "median": math.nan, "ratio": math.nan}
+    empty = {"value": math.nan}
     return [Row(**(empty | {k: v for k, v in row.items() if v is not None})) for row in record["rows"]]
 
 

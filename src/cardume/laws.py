@@ -359,7 +359,7 @@ class Law:
             call = f"    answer, after = law({given})"
         signals = ", ".join(f"signal_{k}" for k in range(len(self._family.signals)))
         body = "\n".join([call, *stores, "    return as_answer(memory, answer)"])
-        made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function))
+        made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function, body))
         name = f"{self.family}_{self.name}_{made_of}_{rows.name}"
         scope = {"__name__": __name__, "law": with_compiled_helpers(self.function), "Memory": self.memory_type}
         scope |= {"load": load, "store": store, "at": at, "as_answer": law_answer(self._family.result)}
@@ -393,7 +393,8 @@ class Law:
 
     def _sample_call(self) -> Any:
         samples: dict[str, Any] = {f"signal_{k}": _sample(kind) for k, kind in enumerate(self._family.signals)}
-        samples |= {"dt": 0.1, "memory": self.memory_type() if self.memory_type else None}
+        fresh = [np.array(v) if np.ndim(v) else v for v in self.memory_type()] if self.memory_type else []
+        samples |= {"dt": 0.1, "memory": self.memory_type(*fresh) if self.memory_type else None}
         defaults = iter(p.default for p in self.parameters)
         return self.function(*[samples[g] if g in samples else next(defaults) for g in self._given])
 

@@ -115,7 +115,9 @@ def transition(k1, k2, tick):
     columns = []
     for north, current in ((1.0, 0.0), (0.0, 1.0)):
         memory = Observed(1.0, north, 0.0, current, 0.0)
-        _, after = complementary(NavigationEstimate(0.0, 0.0), Motion(*[0.0] * len(Motion._fields)), memory, tick, k1, k2)
+        _, after = complementary(
+            NavigationEstimate(0.0, 0.0), Motion(*[0.0] * len(Motion._fields)), memory, tick, k1, k2
+        )
         columns.append([after.north, after.current_north])
     return np.array(columns).T
 

@@ -52,9 +52,9 @@ def with_compiled_helpers(function: Any, done: dict[Any, Any] | None = None) -> 
     return done[function]
 
 
-def fingerprint(function: Callable[..., Any]) -> str:
-    """Hash of the bytecode and constants of a function and of everything it reaches by name."""
-    digest = hashlib.blake2s(digest_size=8)
+def fingerprint(function: Callable[..., Any], wrapper: str = "") -> str:
+    """Hash of the bytecode and constants of a function and of all it reaches by name, and of the code around it."""
+    digest = hashlib.blake2s(wrapper.encode(), digest_size=8)
     seen: set[Any] = set()
 
     def add(value: Any, scope: dict[str, Any]) -> None:
@@ -69,13 +69,13 @@ def fingerprint(function: Callable[..., Any]) -> str:
                     add(cell.cell_contents, value.__globals__)
                 add(value.__defaults__, value.__globals__)
         elif isinstance(value, np.ndarray):
-            digest.update(value.tobytes())
+            digest.update(repr((value.dtype.str, value.shape)).encode() + value.tobytes())
         elif isinstance(value, type) and hasattr(value, "_fields"):
             digest.update(repr((value._fields, getattr(value, "_field_defaults", {}))).encode())
         elif isinstance(value, tuple):
             for part in value:
                 add(part, scope)
-        elif isinstance(value, (bool, int, float, str)):
+        elif isinstance(value, (bool, int, float, str, np.generic)):
             digest.update(repr(value).encode())
 
     def _add_code(code: CodeType, scope: dict[str, Any]) -> None:

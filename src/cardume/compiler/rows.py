@@ -103,7 +103,8 @@ def rows_of(array: np.ndarray) -> Rows:
 
 def _rows_type(array: Any) -> Any:
     kinds: dict[Any, Any] = {(1, types.float64): FLAT_ROWS, (2, types.float64): LANE_ROWS, (1, types.int64): INTS}
-    return kinds[array.ndim, array.dtype](array)
+    kind = kinds.get((array.ndim, array.dtype)) if array.layout == "C" else None
+    return kind(array) if kind else None
 
 
 @primitive(rows_of, _rows_type)

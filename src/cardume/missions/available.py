@@ -91,7 +91,7 @@ def users_law(family: str, name: str, folders: Sequence[Path]) -> Law:
     if not folders:
         raise LawError(
             f"'{name}' is code of yours, and code is run only where the command line allows it:"
-            f" add --allow-code DIR, DIR being the folder that holds {module_name.split('.')[0]}.py"
+            f" add --allow-code DIR, DIR being the folder in which {module_name.split('.')[0]} lies"
         )
     parts = module_name.split(".")
     if not all(part.isidentifier() for part in parts) or not function.isidentifier():

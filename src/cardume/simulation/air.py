@@ -37,6 +37,12 @@ def arrived(fleet: Fleet, listener: int, time: float) -> Rows:
         store(at(fleet.air.inbox, link * fleet.air.messages), FLAG, 0.0)
         if some(load(fleet.air.due, link) <= time):
             collect(fleet, listener, link, load(sources, source + 1), time)
+    return inbox_of(fleet, listener)
+
+
+@compiled
+def inbox_of(fleet: Fleet, listener: int) -> Rows:
+    """What a listener last heard from each of its sources."""
     return at(fleet.air.inbox, listener * fleet.air.widest * fleet.air.messages)
 
 

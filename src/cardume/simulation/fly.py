@@ -80,6 +80,9 @@ def fly_batch(plans: Sequence[Plan], threads: int = 2, lanes: bool = False) -> l
 
     Returns:
         The missions after their flight, in order.
+
+    Raises:
+        ValueError: missions that cannot share their lanes.
     """
     if lanes:
         groups = [plans[k : k + WIDTH] for k in range(0, len(plans), WIDTH)]
@@ -90,10 +93,13 @@ def fly_batch(plans: Sequence[Plan], threads: int = 2, lanes: bool = False) -> l
 
 
 def _fly_lanes(plans: Sequence[Plan]) -> list[Flown]:
+    if len({plan.num_ticks for plan in plans}) > 1:
+        raise ValueError("missions in lanes must last equally long")
     joined = join([make_tables(plan, lanes=True) for plan in plans])
     ticks = int(advance(joined, 0, plans[0].num_ticks))
     singles = [lane(joined, k) for k in range(len(plans))]
-    return [Flown(p, t, ticks, trouble_in(p, t)) for p, t in zip(plans, singles, strict=True)]
+    # One that fails in a lane goes on until the others are done; alone it ends where it failed.
+    return [fly(p) if trouble_in(p, t) else Flown(p, t, ticks) for p, t in zip(plans, singles, strict=True)]
 
 
 def trouble_in(plan: Plan, tables: Tables) -> Trouble | None:

@@ -41,13 +41,13 @@ def metrics_of(flown: Flown) -> Metrics:
         score, talk = _record(row, Score), _record(row, Talk)
         formation = _record(row, Formation)
         length = float(vehicle.path[LENGTH_REFERENCE])
-        found = _of_path(score, histograms[place[k]], length) | _of_talk(talk)
+        found = _of_path(score, histograms[place[k]], plan.tick) | _of_talk(talk)
         if size > 1:
             found |= _of_formation(formation, histograms[place[k]])
         if plan.rules.swath > 0.0:
             found["swath_coverage"] = 100.0 * min(1.0, score.swept / length)
         vehicles[vehicle.name] = found
-    fleet = FleetScore(*flown.tables.fleet_score[: FLEET_SCORES.width])
+    fleet = FleetScore(*flown.tables.fleet_score[: FLEET_SCORES.width].tolist())
     return Metrics(fleet=_of_fleet(fleet) if size > 1 else {}, vehicles=vehicles)
 
 
@@ -56,8 +56,9 @@ def _record(row: np.ndarray, record: Any) -> Any:
     return record(*(float(x) for x in row[start : start + len(record._fields)]))
 
 
-def _of_path(score: Score, histograms: np.ndarray, length: float) -> dict[str, float]:
+def _of_path(score: Score, histograms: np.ndarray, tick: float) -> dict[str, float]:
     counted = score.line_time + score.arc_time
+    steps = counted - tick  # [s] between the first and the last tick that count
     return {
         "cross_track_rms": _rms(score.line_squares + score.arc_squares, counted),
         "cross_track_p95": percentile(histograms[CROSS_TRACK], 0.95),
@@ -67,7 +68,7 @@ def _of_path(score: Score, histograms: np.ndarray, length: float) -> dict[str, f
         "settling_time": score.settling_time if score.settled else math.nan,
         "position_error_rms": _rms(score.position_squares, score.flown),
         "current_error_rms": _rms(score.current_squares, score.flown),
-        "path_speed_mean": score.progress / counted if counted else math.nan,
+        "path_speed_mean": score.progress / steps if steps > 0.5 * tick else math.nan,
         "energy": score.energy,
         "yaw_effort": score.yaw_effort,
     }
@@ -119,5 +120,5 @@ def percentile(bins: np.ndarray, share: float) -> float:
     k = int(np.searchsorted(below, share * total, side="left")) - 1
     k = min(max(k, 0), BINS - 1)
     within = (share * total - below[k]) / bins[k] if bins[k] else 0.0
-    x = min((k + within) / BINS, 1.0 - 1e-9)
+    x = float(min((k + within) / BINS, 1.0 - 1e-9))
     return x / (1.0 - x)

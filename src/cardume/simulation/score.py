@@ -113,7 +113,10 @@ def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time
     squared = error * error
     first_state = where(ends, on_path.coordination_state, before.first_state)
     believed, current = believed_errors(fleet, vehicle, vessel)
-    advance = where(on_path.coordination_state > before.farthest, on_path.coordination_state - before.farthest, 0.0)
+    state = on_path.coordination_state
+    starts_there = (before.flown == 0.0) & (state > 0.0)  # nothing is swept by starting there
+    farthest = where(starts_there, state, before.farthest)
+    advance = where(state > farthest, state - farthest, 0.0)
     covers = where(rules.swath > 0.0, clip(1.0 - error / where(rules.swath > 0.0, rules.swath, 1.0), 0.0, 1.0), 0.0)
     yaw_acceleration = (vessel.yaw_rate - before.last_yaw_rate) / dt
     after = Score(
@@ -134,7 +137,7 @@ def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time
         before.yaw_effort + dt * yaw_acceleration * yaw_acceleration,
         vessel.yaw_rate,
         before.swept + advance * covers,
-        where(advance > 0.0, on_path.coordination_state, before.farthest),
+        where(advance > 0.0, state, farthest),
     )
     put_score(fleet.scores, vehicle, after)
     tally(fleet, vehicle, CROSS_TRACK, error, counted > 0.0)

@@ -85,7 +85,7 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
         paths,
         path_starts,
         graph,
-        np.ascontiguousarray(plan.field, float),
+        np.array(plan.field, float),  # never read-only: that would be another type, and compile the engine again
         np.full(size * slots * messages, np.nan),
         np.zeros(size),
         np.zeros(size, np.int64),
@@ -112,6 +112,9 @@ def join(tables: Sequence[Tables]) -> Tables:
 
     Returns:
         Tables of (n, 8) arrays; whole numbers and the gridded current are the first mission's.
+
+    Raises:
+        ValueError: missions that differ in what all lanes share, or in the size of a table.
     """
     full = [*tables, *[tables[-1]] * (WIDTH - len(tables))]
     first = full[0]
@@ -119,8 +122,17 @@ def join(tables: Sequence[Tables]) -> Tables:
     for name in Tables._fields:
         parts = [getattr(t, name) for t in full]
         is_shared = name == "field" or not isinstance(parts[0], np.ndarray) or parts[0].dtype == np.int64
+        if not all(_fit(part, parts[0], is_shared) for part in parts):
+            raise ValueError(f"missions in lanes must have the same laws, sizes and graph; these differ in '{name}'")
         joined.append(getattr(first, name) if is_shared else np.ascontiguousarray(np.stack(parts, axis=-1)))
     return Tables._make(joined)
+
+
+def _fit(part: Any, first: Any, is_shared: bool) -> bool:
+    """Whether a mission's part can stand beside the first one's: equal, or of its shape."""
+    if not is_shared:
+        return bool(part.shape == first.shape)
+    return part is first or np.array_equal(part, first, equal_nan=True)
 
 
 def lane(tables: Tables, which: int) -> Tables:

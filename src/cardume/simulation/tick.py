@@ -63,9 +63,10 @@ def tick(fleet: Fleet, now: int) -> bool:
     record(fleet, now)
     for i in range(fleet.size):
         score(fleet, i, get_vessel(fleet.vehicles, i), get_on_path(fleet.vehicles, i), time)
+    score_fleet(fleet)
+    for i in range(fleet.size):
         vessel = move(fleet, i, get_reference(fleet.vehicles, i), get_water(fleet.vehicles, i))
         put_vessel(fleet.vehicles, i, vessel)
-    score_fleet(fleet)
     return health(fleet, time)
 
 

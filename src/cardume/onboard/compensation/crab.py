@@ -2,8 +2,9 @@
 
 from typing import Annotated
 
+from cardume.compiler import some
 from cardume.laws import Bounds, MetersPerSecond, Number, Positive
-from cardume.maths import asin, atan2, clip, hypot, sincos
+from cardume.maths import asin, atan2, clip, sincos, sqrt
 from cardume.onboard.compensation.base import Steering, compensation_law
 from cardume.signals import Course, Motion
 
@@ -41,7 +42,10 @@ def crab(
     along = cosine * motion.current_north + sine * motion.current_east
     across = cosine * motion.current_east - sine * motion.current_north
     sway = use_sway * motion.sway
-    speed = clip(hypot(motion.surge, sway), speed_min, 1e9)
-    heading = course.course - asin(clip(across / speed, -LIMIT, LIMIT)) - atan2(sway, speed)
-    through_water = hypot(course.speed - along, across)
+    speed = clip(sqrt(motion.surge * motion.surge + sway * sway), speed_min, 1e9)
+    heading = course.course - asin(clip(across / speed, -LIMIT, LIMIT))
+    if some(use_sway > 0.0):
+        heading = heading - atan2(sway, speed)
+    needed = course.speed - along
+    through_water = sqrt(needed * needed + across * across)
     return Steering(heading, course.speed + course.over_ground * (through_water - course.speed))
