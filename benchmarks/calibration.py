@@ -92,7 +92,8 @@ class Calibration:
     def __init__(self, steps_of_a_loop: int = VEHICLE_STEPS) -> None:
         self.steps_of_a_loop = steps_of_a_loop
         self.seen: list[Taken] = []  # by one loop on one thread
-        calibration_loop(1)
+        calibration_loop(1)  # compiles
+        self.run()
 
     def run(self, loops: int = 1, threads: int = 1) -> Taken:
         """Run the loop.

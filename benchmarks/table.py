@@ -15,7 +15,7 @@ COLORS = {"yes": "green", "at best": "yellow", "no": "red"}
 BUSY = 1.15  # by the clock over processor time
 MEANING = """\
 figure: the best of several runs by the clock; median: the middle one; cpu: the best in processor time, as if nothing
-else ran here. Met: by the clock; "at best" where only the best run reaches the target.
+else ran here and threads never waited. Met: by the clock; "at best" where only the best run reaches the target.
 ratio: time in calibration loops, a fixed compiled loop timed beside each run, for as many vehicle-steps (processes: in
 loops of 36,000, one mission of 600 s); in processor time, on two threads by the clock. Compare it where machines or
 their load differ.
@@ -114,7 +114,7 @@ def compare(console: Console, rows: Sequence[Row], record: dict[str, Any], then:
     table = Table(title=f"Against {name} (commit {then['commit'] or 'unknown'})", title_justify="left")
     table.add_column("workload")
     table.add_column("what")
-    for heading in ("then", "now", "times faster by the clock", "by the calibration loop"):
+    for heading in ("then", "now", "faster, by clock", "faster, by loop"):
         table.add_column(heading, justify="right")
     old = {row.key: row for row in rows_of(then)}
     for row in rows:
@@ -129,6 +129,9 @@ def compare(console: Console, rows: Sequence[Row], record: dict[str, Any], then:
                 number(was.ratio / row.ratio) if same_loop else "",
             )
     console.print(table)
+    console.print(
+        'faster: "2.0" is twice as fast; by loop: in calibration loops, so that load matters less', highlight=False
+    )
     if missing := [row for row in rows if row.key not in old]:
         console.print(f"not in {name}: {', '.join(f'{r.workload}: {r.case}' for r in missing)}", highlight=False)
     if not same_loop:

@@ -238,7 +238,7 @@ class NeighborReport(NamedTuple):
     path_speed: float  # [m/s] its rate of change then
     age: float  # [s] since it was valid
     nominal_speed: float  # [m/s] v_L
-    correction: float  # [m/s] what the coordination law gives for it now
+    correction: float  # [m/s] what the coordination law gave for it at the last tick
 
 
 class Outbox(NamedTuple):

@@ -195,7 +195,6 @@ def test_built_in_missions_have_no_errors_and_only_these_warnings(name: str) -> 
     found = [finding for finding in check_mission(open_mission(name)) if finding.level != "note"]
     true_of = {
         "kinematic/line": {"duration"},  # it shows the approach, not the whole line
-        "paper/figure-5": {"duration"},
         "cadiz": {"coordination.gain", "path"},  # slow: in the inner arc, 0.23 m/s in a current of 0.1 m/s
     }
     assert {finding.level for finding in found} <= {"warning"}, found
@@ -227,6 +226,18 @@ def test_values_that_vary_are_looked_at_in_their_extremes() -> None:
     assert not told(HULLED, "current.speed", "current.speed={uniform: [0.1 m/s, 1.5 m/s]}")
     sweep = "guidance={sweep: [{law: line_of_sight}, {law: arcsine, gain: 1 1/s}]}"
     assert find(HULLED, "warning", "guidance.gain", sweep).message.endswith("(with guidance = arcsine)")
+
+
+EXTREMES = (
+    "tick=0.01 s;formation.speed=1e-6;formation.speed=1e6;current.speed=1e3;guidance.lookahead=1e-6;duration=0.01"
+)
+EXTREMES += ";current_observer.k1=1e-6;acoustics.loss=0.999;acoustics.delay=1000;position=direct;vehicles.b.depth=5 km"
+EXTREMES += ";vehicles.a.sensors.gnss.latency=60 s;vehicles.a.offset.ahead=1 km;messaging.offset=1e6"
+
+
+@pytest.mark.parametrize("spoil", EXTREMES.split(";"))
+def test_extreme_values_are_looked_at_too(spoil: str) -> None:
+    assert all("nan" not in finding.message + finding.suggestion for finding in findings(TEAM, [spoil, "end=hold"]))
 
 
 def test_a_users_law_is_looked_at_only_where_that_is_allowed(tmp_path: Path) -> None:

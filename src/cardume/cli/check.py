@@ -47,7 +47,7 @@ def check(
 
     found = find_mission(mission, overrides, seed, allow_code)
     order = list(COLORS)
-    findings = sorted(check_mission(found), key=lambda finding: order.index(finding.level))
+    findings = sorted(check_mission(found, allow_code), key=lambda finding: order.index(finding.level))
     has_errors = any(finding.level == "error" for finding in findings)
     if as_json:
         plain = [{"level": f.level, "key": f.key, "message": f.message, "suggestion": f.suggestion} for f in findings]

@@ -57,6 +57,7 @@ class Acquaintance(NamedTuple):
     time_of_validity: float = LONG_AGO  # [s]
     is_new: float = 0.0  # [-] 1 when this was learnt in this tick
     predicted: float = NOTHING  # [m] coordination state now
+    correction: float = 0.0  # [m/s] what coordination makes it do
     north: float = NOTHING  # [m] where it was seen
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when

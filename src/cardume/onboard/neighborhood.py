@@ -84,7 +84,17 @@ def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
 
 @compiled
 def _updated(known: Acquaintance, state: float, path_speed: float, valid: float, is_new: float) -> Acquaintance:
-    return Acquaintance(state, path_speed, valid, is_new, known.predicted, known.north, known.east, known.time_of_fix)
+    return Acquaintance(
+        state,
+        path_speed,
+        valid,
+        is_new,
+        known.predicted,
+        known.correction,
+        known.north,
+        known.east,
+        known.time_of_fix,
+    )
 
 
 @compiled
@@ -131,7 +141,7 @@ def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, val
         Place(where(is_new, north, 0.0), where(is_new, east, 0.0), path_of(mind, vehicle)),
     )
     speed = where(known.state == known.state, known.path_speed, error.speed_profile)
-    seen = Acquaintance(found.path_parameter, speed, valid, 1.0, known.predicted, north, east, valid)
+    seen = Acquaintance(found.path_parameter, speed, valid, 1.0, known.predicted, known.correction, north, east, valid)
     put_acquaintance(mind.others, vehicle, where(is_new, seen, known))
 
 
@@ -139,41 +149,61 @@ def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, val
 def predict_neighbors(mind: Mind, heard: Rows, error: PathError, time: float) -> Disagreement:
     """Bring what is known of the others up to now, and compare: (53)-(55), (D^-1 L gamma)_i."""
     listen(mind, heard)
+    own_before = error.path_parameter - mind.book.dt * get_along(mind.own, 0).path_speed
     for k in range(1, load(mind.known, 0) + 1):
-        vehicle = load(mind.known, k)
-        known = get_acquaintance(mind.others, vehicle)
-        apart = disagreement_of(mind, vehicle, known.predicted, error.path_parameter)
-        has_view = apart.disagreement == apart.disagreement
-        correction = correct_speed(mind.book, vehicle, where(has_view, apart, _agreement(error)))
-        report = NeighborReport(
-            known.is_new,
-            known.state,
-            known.path_speed,
-            time - known.time_of_validity,
-            error.speed_profile,
-            correction,
-        )
-        predicted = predict(mind.book, vehicle, report)
-        put_acquaintance(
-            mind.others,
-            vehicle,
-            Acquaintance(
-                known.state,
-                known.path_speed,
-                known.time_of_validity,
-                known.is_new,
-                where(known.state == known.state, predicted, NOTHING),
-                known.north,
-                known.east,
-                known.time_of_fix,
-            ),
-        )
+        expect_correction(mind, load(mind.known, k), own_before)
+    for k in range(1, load(mind.known, 0) + 1):
+        bring_up_to_date(mind, load(mind.known, k), error, time)
     return disagreement_of(mind, mind.me, error.path_parameter, error.path_parameter)
 
 
 @compiled
-def _agreement(error: PathError) -> Disagreement:
-    return Disagreement(error.path_parameter, error.path_parameter, 0.0 * error.path_parameter)
+def expect_correction(mind: Mind, vehicle: int, own_before: float) -> None:
+    """What coordination made a vehicle do since the last tick, by all states as they were then.
+
+    Args:
+        mind: whose view it is.
+        vehicle: who is thought of.
+        own_before: [m] own coordination state at the last tick.
+    """
+    known = get_acquaintance(mind.others, vehicle)
+    apart = disagreement_of(mind, vehicle, known.predicted, own_before)
+    has_view = apart.disagreement == apart.disagreement
+    in_agreement = Disagreement(own_before, own_before, 0.0 * own_before)
+    correction = correct_speed(mind.book, vehicle, where(has_view, apart, in_agreement))
+    after = Acquaintance(
+        known.state,
+        known.path_speed,
+        known.time_of_validity,
+        known.is_new,
+        known.predicted,
+        correction,
+        known.north,
+        known.east,
+        known.time_of_fix,
+    )
+    put_acquaintance(mind.others, vehicle, after)
+
+
+@compiled
+def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) -> None:
+    """Predict where a vehicle is along the formation by now."""
+    known = get_acquaintance(mind.others, vehicle)
+    age = time - known.time_of_validity
+    heard_last = NeighborReport(known.is_new, known.state, known.path_speed, age, error.speed_profile, known.correction)
+    predicted = predict(mind.book, vehicle, heard_last)
+    after = Acquaintance(
+        known.state,
+        known.path_speed,
+        known.time_of_validity,
+        known.is_new,
+        where(known.state == known.state, predicted, NOTHING),
+        known.correction,
+        known.north,
+        known.east,
+        known.time_of_fix,
+    )
+    put_acquaintance(mind.others, vehicle, after)
 
 
 @compiled

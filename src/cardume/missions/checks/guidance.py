@@ -11,6 +11,7 @@ from cardume.missions.checks.observer import guidance_rate, spectral_radius
 from cardume.missions.checks.scene import Craft, Scene
 
 SLACK = 1.02
+MOST_GAPS = 50.0
 
 
 class _Setting:
@@ -89,8 +90,8 @@ def _late_fixes(scene: Scene, craft: Craft) -> Iterator[Ranked]:
 
 def _settles(rate: float, age: float, gap: float) -> bool:
     """Whether an error is closed at a rate [1/s] by positions of an age [s] that are held for a gap [s]; 0 for none."""
-    if gap <= 0.0:
-        return rate * age < 0.5 * math.pi
+    if gap <= 0.0 or age > MOST_GAPS * gap:  # held for so short that it is as good as not held
+        return rate * (age + 0.5 * gap) < 0.5 * math.pi
     whole = math.floor(age / gap)
     late = age - whole * gap
     step = np.eye(whole + 2, k=-1)
