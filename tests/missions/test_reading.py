@@ -62,7 +62,7 @@ def test_the_mission_of_the_design_page_is_read() -> None:
     assert surface.start == AbsoluteStart(north=-5.0, east=3.0, heading=20 * DEG, speed=0.0)
     assert surface.sensors.gnss is not None
     assert surface.sensors.gnss.parameters == {"sigma": 0.5, "period": 0.2, "latency": 0.0}
-    assert surface.sensors.thruster_speed is None
+    assert surface.sensors.depth is None  # the tests' catalog gives a surface vehicle none
     assert (port.depth, port.offset, port.initial_estimate) == (
         10.0,
         Offset(starboard=-3.0),
@@ -159,9 +159,9 @@ def test_a_fleet_coordinates_and_speaks_unless_told_otherwise() -> None:
 
 
 def test_default_sensors_are_those_of_the_model_and_the_depth() -> None:
-    read = mission(vehicles=[{"name": "up"}, {"name": "down", "depth": 5}, {"name": "few", "sensors": {"ahrs": {}}}])
+    read = mission(vehicles=[{"name": "up"}, {"name": "down", "depth": 5}, {"name": "few", "sensors": {"gnss": "none"}}])
     carried = [[kind for kind in ("gnss", "ahrs", "depth", "usbl") if getattr(v.sensors, kind)] for v in read.vehicles]
-    assert carried == [["gnss", "ahrs", "usbl"], ["ahrs", "depth"], ["ahrs"]]
+    assert carried == [["gnss", "ahrs", "usbl"], ["ahrs", "depth"], ["ahrs", "usbl"]]
     ideal = replace(CATALOG, default_sensors=lambda model, submerged: "ideal")
     assert parse(json.dumps(tree()), catalog=ideal).vehicles[0].sensors.ideal
 

@@ -148,12 +148,10 @@ def test_rate_beside_an_offset_arc_in_a_current(seed):
         assert order == pytest.approx(1.0, abs=0.15)
 
 
-MIXED = pytest.mark.xfail(reason="the corrections in a prediction mix states of two ticks", strict=True)
 NEVER = 1e6  # ticks: one message at the start
 tanh_of = "{{law: laplacian_tanh, gain: {!r}, length_scale: {!r}, topology: complete}}".format
 
 
-@MIXED
 @pytest.mark.parametrize(("size", "tick"), [(2, 0.1), (3, 1.0), (4, 0.4)])
 def test_a_formation_that_agrees_is_predicted_exactly(size, tick):
     """(55): with no disagreement gamma_hat grows by v_L dt, whatever the tick: nobody corrects anything."""
@@ -168,7 +166,6 @@ def test_a_formation_that_agrees_is_predicted_exactly(size, tick):
     assert np.abs(errors).max() < 1e-9
 
 
-@MIXED
 @pytest.mark.parametrize(("size", "largest"), [(2, 2.0), (3, 1.5), (4, 4.0 / 3.0)])
 @pytest.mark.parametrize(("tick", "scale"), [(0.9, 0.1), (0.6, 0.07)])
 def test_longest_step_of_the_prediction(size, largest, tick, scale):
