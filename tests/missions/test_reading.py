@@ -159,7 +159,9 @@ def test_a_fleet_coordinates_and_speaks_unless_told_otherwise() -> None:
 
 
 def test_default_sensors_are_those_of_the_model_and_the_depth() -> None:
-    read = mission(vehicles=[{"name": "up"}, {"name": "down", "depth": 5}, {"name": "few", "sensors": {"gnss": "none"}}])
+    read = mission(
+        vehicles=[{"name": "up"}, {"name": "down", "depth": 5}, {"name": "few", "sensors": {"gnss": "none"}}]
+    )
     carried = [[kind for kind in ("gnss", "ahrs", "depth", "usbl") if getattr(v.sensors, kind)] for v in read.vehicles]
     assert carried == [["gnss", "ahrs", "usbl"], ["ahrs", "depth"], ["ahrs", "usbl"]]
     ideal = replace(CATALOG, default_sensors=lambda model, submerged: "ideal")

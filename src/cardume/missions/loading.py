@@ -117,7 +117,7 @@ def _equip(vehicle: Node, context: Context) -> Node:
     """A vehicle whose list of sensors also has those that its model always carries; `none` leaves one out."""
     entries = vehicle.value if isinstance(vehicle.value, dict) else {}
     sensors, model, depth = (entries.get(key) for key in ("sensors", "model", "depth"))
-    if sensors is None or not isinstance(sensors.value, dict):
+    if sensors is None or not isinstance(sensors.value, dict) or is_varying(sensors):
         return vehicle
     named = model.value.get("law", model) if model is not None and isinstance(model.value, dict) else model
     is_submerged = depth is not None and str(depth.value).split()[:1] not in (["0"], ["0.0"])

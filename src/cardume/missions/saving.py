@@ -94,13 +94,13 @@ def _list(kind: ListOf, value: tuple[Any, ...], directory: Path | None) -> list[
 
 
 def _fields(record: type, value: Any, directory: Path | None) -> dict[str, Any]:
-    """A record as its section; what is None is left out."""
+    """A record as its section; what is None is left out, unless a word says it."""
     section: dict[str, Any] = {}
     for field in fields_of(record):
         item = getattr(value, field.key)
         if isinstance(field.kind, Laws) and field.kind.inlined:
             section |= _choice(field.kind, item, directory)
-        elif item is not None:
+        elif item is not None or None in getattr(field.kind, "words", {}).values():
             section[field.key] = write(field.kind, item, directory)
     return section
 

@@ -1,0 +1,182 @@
+"""The name of a user's law in the cache covers everything its result depends on: another result, another name."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cardume.compiler.calls import FLAT
+from cardume.compiler.reach import is_recursive
+from cardume.laws import Law
+
+HEADER = """
+from typing import NamedTuple
+import numpy as np
+from cardume.laws import Meters
+from cardume.maths import atan2
+from cardume.onboard.estimation.position import position_law
+from cardume.onboard.guidance import guidance_law
+from cardume.signals import Fix, Motion, NavigationEstimate, PathError
+"""
+LAW = """
+@guidance_law
+def mine(error: PathError, lookahead: Meters = 5.0) -> float:
+    return error.path_course - {body}
+"""
+MEMORY = """
+class Ring(NamedTuple):
+    first: float = 0.0
+    ring: np.ndarray = np.zeros({size})
+    last: float = 0.0
+
+@guidance_law
+def mine(error: PathError, memory: Ring) -> float:
+    return error.path_course + memory.last, memory
+"""
+PICKED = """
+@position_law
+def mine(one: {one}, two: {two}) -> NavigationEstimate:
+    return make(one, two)
+
+def make(one, two):
+    return NavigationEstimate(one[0], two[1])
+"""
+HELPER = "\ndef helper(x{given}):\n    return {body}\n"
+NESTED = """
+def outer(k):
+    @guidance_law
+    def mine(error: PathError) -> float:
+        return error.path_course - k
+    return mine
+mine = outer({k})
+"""
+CASES = {
+    "a number in the law": (LAW.format(body="1.0"), LAW.format(body="2.0")),
+    "an operation in the law": (LAW.format(body="error.cross_track + 1.0"), LAW.format(body="error.cross_track * 1.0")),
+    "a signal's field": (LAW.format(body="error.cross_track"), LAW.format(body="error.along_track")),
+    "a module's constant": ("K = 1.0" + LAW.format(body="K"), "K = 2.0" + LAW.format(body="K")),
+    "a whole number": ("K = 1" + LAW.format(body="K"), "K = 1.0" + LAW.format(body="K")),
+    "a sign of zero": ("K = 0.0" + LAW.format(body="K"), "K = -0.0" + LAW.format(body="K")),
+    "a truth value": ("K = True" + LAW.format(body="K"), "K = False" + LAW.format(body="K")),
+    "a numpy integer": ("K = np.int64(1)" + LAW.format(body="K"), "K = np.int64(2)" + LAW.format(body="K")),
+    "a numpy float": ("K = np.float32(1)" + LAW.format(body="K"), "K = np.float32(2)" + LAW.format(body="K")),
+    "a tuple": ("K = (1.0, (2.0,))" + LAW.format(body="K[0]"), "K = (1.0, (3.0,))" + LAW.format(body="K[0]")),
+    "an array": ("K = np.ones(3)" + LAW.format(body="K[0]"), "K = np.zeros(3)" + LAW.format(body="K[0]")),
+    "the shape of an array": (
+        "K = np.zeros((2, 3))" + LAW.format(body="K[0, 1]"),
+        "K = np.zeros((3, 2))" + LAW.format(body="K[0, 1]"),
+    ),
+    "the type of an array": (
+        "K = np.zeros(2)" + LAW.format(body="K[0]"),
+        "K = np.zeros(2, int)" + LAW.format(body="K[0]"),
+    ),
+    "a helper": (
+        HELPER.format(given="", body="x") + LAW.format(body="helper(1.0)"),
+        HELPER.format(given="", body="2.0 * x") + LAW.format(body="helper(1.0)"),
+    ),
+    "a helper's default": (
+        HELPER.format(given=", k=1.0", body="k * x") + LAW.format(body="helper(1.0)"),
+        HELPER.format(given=", k=2.0", body="k * x") + LAW.format(body="helper(1.0)"),
+    ),
+    "a helper's constant": (
+        "K = 1.0" + HELPER.format(given="", body="K") + LAW.format(body="helper(1.0)"),
+        "K = 2.0" + HELPER.format(given="", body="K") + LAW.format(body="helper(1.0)"),
+    ),
+    "a closure": (NESTED.format(k="1.0"), NESTED.format(k="2.0")),
+    "a lambda": (
+        "helper = lambda x: x" + LAW.format(body="helper(1.0)"),
+        "helper = lambda x: -x" + LAW.format(body="helper(1.0)"),
+    ),
+    "the size of a memory it only hands back": (MEMORY.format(size=8), MEMORY.format(size=16)),
+    "which signal is which": (PICKED.format(one="Fix", two="Motion"), PICKED.format(one="Motion", two="Fix")),
+}
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Iterator[Path]:
+    """A folder of a user's own modules."""
+    sys.path.insert(0, str(tmp_path))
+    before = set(sys.modules)
+    yield tmp_path
+    sys.path.remove(str(tmp_path))
+    for name in set(sys.modules) - before:
+        del sys.modules[name]
+
+
+def law_in(source: str, name: str = "users_module") -> Law:
+    """The law `mine` of a module of this source."""
+    scope = {"__name__": name}
+    exec(compile(HEADER + source, f"<{name}>", "exec"), scope)
+    law = scope["mine"]
+    assert isinstance(law, Law)
+    return law
+
+
+def name_in_the_cache(law: Law) -> str:
+    return str(law._wrapper(FLAT).__name__)
+
+
+@pytest.mark.parametrize("what", CASES)
+def test_whatever_changes_the_result_changes_the_name(what: str) -> None:
+    before, after = CASES[what]
+    assert name_in_the_cache(law_in(before)) == name_in_the_cache(law_in(before))
+    assert name_in_the_cache(law_in(before)) != name_in_the_cache(law_in(after))
+
+
+def test_what_does_not_matter_does_not() -> None:
+    """Another file, other lines, comments and a docstring compile nothing anew."""
+    law = LAW.format(body="helper(1.0)")
+    one = law_in(HELPER.format(given="", body="x") + law)
+    other = law_in("# a comment\n\n" + HELPER.format(given="", body="x  # why") + "UNUSED = 3\n" + law, "elsewhere")
+    assert name_in_the_cache(one) == name_in_the_cache(other)
+
+
+MODULES = {
+    "from": ("from lab.tools import turn", "turn(1.0)"),
+    "as": ("from lab.tools import turn as t", "t(1.0)"),
+    "dotted constant": ("from lab import tools", "tools.GAIN"),
+    "two dots": ("import lab.tools", "lab.tools.GAIN"),
+}
+
+
+@pytest.mark.parametrize("how", MODULES)
+def test_other_files_are_reached_however_they_are_imported(folder: Path, how: str) -> None:
+    imported, used = MODULES[how]
+    names = []
+    for gain in ("1.0", "2.0"):
+        (folder / "lab").mkdir(exist_ok=True)
+        (folder / "lab" / "__init__.py").write_text("")
+        (folder / "lab" / "tools.py").write_text(f"GAIN = {gain}\ndef turn(x):\n    return GAIN * x\n")
+        for module in ("lab", "lab.tools"):
+            sys.modules.pop(module, None)
+        shutil.rmtree(folder / "lab" / "__pycache__", ignore_errors=True)  # edits within a second look alike to it
+        names.append(name_in_the_cache(law_in(imported + LAW.format(body=used))))
+    assert names[0] != names[1]
+
+
+RECURSIVE = """
+def down(n):
+    return {first}
+def other(n):
+    return {second}
+@guidance_law
+def mine(error: PathError) -> float:
+    return error.path_course + down(3.0)
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "expected"),
+    [
+        ("n if n < 1.0 else down(n - 1.0)", "n", True),
+        ("n if n < 1.0 else other(n - 1.0)", "down(n)", True),
+        ("other(n) + other(n)", "n", False),
+    ],
+)
+def test_recursion_is_noticed(first: str, second: str, expected: bool) -> None:
+    law = law_in(RECURSIVE.format(first=first, second=second))
+    assert is_recursive(law.function) is expected
