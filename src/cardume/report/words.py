@@ -68,7 +68,9 @@ def _ending(flight: Flight, mission: Mission) -> str:
 
 
 def _duration(seconds: float) -> str:
-    return f"{1000 * seconds:.2g} ms" if seconds < 0.995 else f"{seconds:.3g} s"
+    if seconds >= 0.9995:
+        return f"{seconds:.3g} s"
+    return f"{1000 * seconds:.2g} ms" if seconds < 0.0995 else f"{1000 * seconds:.0f} ms"
 
 
 def _keeping(flight: Flight, mission: Mission) -> Iterator[str]:
