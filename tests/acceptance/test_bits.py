@@ -208,7 +208,6 @@ def test_plain_python_gives_the_bits_of_compiled_code() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.timeout(900)
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="names processors of x86")
 @pytest.mark.parametrize("processor", ["x86-64", "haswell"])  # SSE2 alone; AVX2 with FMA, no AVX-512
 def test_lesser_instruction_sets(processor: str) -> None:

@@ -14,7 +14,6 @@ from cardume.laws import Law, Meters, Number, Radians, Seconds
 from cardume.missions.flying import flight_of
 from cardume.missions.planning import Planned
 from cardume.onboard.compensation.base import Steering, compensation_law
-from cardume.onboard.estimation.current import current_observer_law
 from cardume.onboard.estimation.position import position_law
 from cardume.onboard.guidance import guidance_law
 from cardume.signals import (
@@ -128,12 +127,6 @@ def lost_position(fix: Fix, motion: Motion, after: Meters = LATE) -> NavigationE
     return NavigationEstimate(where(fix.north > after, NOTHING, fix.north), fix.east)
 
 
-@current_observer_law
-def lost_drift(position: NavigationEstimate, motion: Motion, after: Meters = LATE) -> Water:
-    """No current, which nobody compensates for. Source: this test."""
-    return Water(where(position.north > after, NOTHING, 0.0), 0.0)
-
-
 @vehicle_model
 def lost_vehicle(
     vessel: VesselState, reference: Reference, water: Water, dt: Seconds, after: Meters = LATE
@@ -153,7 +146,6 @@ TROUBLES: list[tuple[str, Law, dict[str, float], str, float]] = [
     ("guidance", lost_course, {}, "reference", 60.1),
     ("compensation", lost_speed, {"after": -1.0}, "reference", 0.0),
     ("position", lost_position, {}, "position estimate", 60.1),
-    ("current_observer", lost_drift, {}, "current estimate", 60.1),
     ("model", lost_vehicle, {}, "state", 60.1),
     ("current", lost_current, {}, "current", 30.1),
 ]

@@ -46,10 +46,6 @@ def plan(duration=60, period=1, loss=0, delay=0.3, sound=1500, topology="complet
     )
 
 
-def with_laws(own: Plan, laws: dict[str, Choice]) -> Plan:
-    return replace(own, vehicles=tuple(replace(v, laws=v.laws | laws) for v in own.vehicles))
-
-
 def distance(seen: Watched, sender: int, receiver: int) -> np.ndarray:
     """(tick,) [m] between two vehicles."""
     parts = [seen.at_start(VesselState, axis) for axis in ("north", "east", "depth")]
@@ -152,7 +148,9 @@ def overtaking(link: Link, step: Seconds = 0.1) -> Arrival:
 
 
 def test_of_messages_that_come_in_one_tick_the_latest_is_read_and_all_count() -> None:
-    own = with_laws(plan(duration=300), {"messaging": Choice(thrice), "acoustics": Choice(overtaking)})
+    own = plan(duration=300)
+    laws = {"messaging": Choice(thrice), "acoustics": Choice(overtaking)}
+    own = replace(own, vehicles=tuple(replace(v, laws=v.laws | laws) for v in own.vehicles))
     seen, together, crossed = watch(own), 0, 0
     rows = seen.messages()
     assert len(rows["sender"]) == 6 * 3 * 60
@@ -181,26 +179,6 @@ def test_many_messages_under_way_do_not_overwrite_one_another(period: float) -> 
         ages = np.ceil(rows["time_received"][mine] / 0.1 - 1e-9) * 0.1 - rows["time_of_validity"][mine]
         assert metrics.vehicles[name]["messages_delivered"] == mine.sum()
         assert metrics.vehicles[name]["information_age_max"] == pytest.approx(ages.max(), abs=1e-9)
-
-
-@messaging_law
-def always(outbox: Outbox) -> float:
-    """Speaks in every tick, and does not say so. Source: this test."""
-    return 1.0
-
-
-@acoustics_law
-def slow(link: Link, lag: Seconds = 3.05) -> Arrival:
-    """Takes its time. Source: this test."""
-    return Arrival(lag, 1.0)
-
-
-def test_a_channel_and_a_schedule_of_a_users_own_have_room_enough() -> None:
-    own = with_laws(plan(duration=20), {"messaging": Choice(always), "acoustics": Choice(slow)})
-    seen = watch(own)
-    metrics = metrics_of(Flown(own, seen.tables, own.num_ticks))
-    assert [metrics.vehicles[n]["messages_delivered"] for n in "abc"] == [2.0 * (200 - 31)] * 3
-    assert metrics.vehicles["a"]["information_age_max"] == pytest.approx(3.1)
 
 
 def test_nobody_hears_whom_it_does_not_listen_to() -> None:

@@ -103,6 +103,5 @@ def _failure(vehicle: str, signal: str, seconds: float) -> str:
         "state": "its model diverged: shorten plant_step, or look at its gains",
         "reference": "a law aboard gave no number: look at its sensors and its gains",
         "position estimate": "its estimator diverged: look at its fixes and gains",
-        "current estimate": "its current observer diverged: look at its gains",
     }
     return f"the {signal} of vehicle {vehicle} was no number at {seconds:g} s; {advice[signal]}"

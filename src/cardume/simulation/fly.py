@@ -12,7 +12,7 @@ from cardume.simulation.tables import join, lane, make_tables
 from cardume.simulation.tick import CODE, FINE, TIME, VEHICLE
 
 SLICE = 1000  # ticks between two looks at whether to stop: some milliseconds
-SIGNALS = {1.0: "state", 2.0: "current", 3.0: "reference", 4.0: "position estimate", 5.0: "current estimate"}
+SIGNALS = {1.0: "state", 2.0: "current", 3.0: "reference", 4.0: "position estimate"}
 
 
 @dataclass(frozen=True)

@@ -276,20 +276,13 @@ def _graph(plan: Plan, vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, int
 
 def _slots(vehicles: Sequence[VehiclePlan]) -> int:
     """How many messages of one sender can be under way: the longest delay over the shortest period."""
-    choices = [(v.laws[f], name) for v in vehicles for f, name in (("acoustics", "delay"), ("messaging", "period"))]
-    if not all(choice.law.is_builtin or _has(choice, name) for choice, name in choices):
-        return MOST_SLOTS  # a user's channel or schedule does not say
     delays = [_parameter(v.laws["acoustics"], "delay", 2.0) for v in vehicles]
     periods = [_parameter(v.laws["messaging"], "period", 0.5) for v in vehicles]
     return min(MOST_SLOTS, math.ceil((max(delays) + 2.0) / min(periods)) + 2)
 
 
-def _has(choice: Choice, name: str) -> bool:
-    return any(p.name == name for p in choice.law.parameters)
-
-
 def _parameter(choice: Choice, name: str, otherwise: float) -> float:
-    return choice.value(name) if _has(choice, name) else otherwise
+    return choice.value(name) if any(p.name == name for p in choice.law.parameters) else otherwise
 
 
 def _past_size(vehicles: Sequence[VehiclePlan], tick: float) -> int:

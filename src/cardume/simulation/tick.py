@@ -2,7 +2,7 @@
 
 from cardume.compiler import Rows, at, compiled, load, negate, some, store, where
 from cardume.onboard.agent import decide
-from cardume.onboard.mind import get_current, get_whereabouts
+from cardume.onboard.mind import get_whereabouts
 from cardume.paths.projection import project
 from cardume.signals import Noise, Place, VesselState, Water, Where
 from cardume.simulation.air import arrived, carry, speak
@@ -32,7 +32,7 @@ from cardume.simulation.score import score, score_fleet
 from cardume.simulation.sensing import sense
 from cardume.world.currents.base import flow
 
-FINE, STATE, CURRENT, REFERENCE, BELIEF, OBSERVED = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0  # what is not a number
+FINE, STATE, CURRENT, REFERENCE, BELIEF = 0.0, 1.0, 2.0, 3.0, 4.0  # what is not a number
 CODE, VEHICLE, TIME, TROUBLE_WIDTH = range(4)  # columns of Fleet.trouble
 
 
@@ -116,14 +116,12 @@ def note_if_ill(fleet: Fleet, vehicle: int, time: float) -> None:
     """Look at one vehicle: x - x is 0 only for finite x."""
     vessel, water = get_vessel(fleet.vehicles, vehicle), get_water(fleet.vehicles, vehicle)
     reference = get_reference(fleet.vehicles, vehicle)
-    place, observed = get_whereabouts(fleet.minds, vehicle), get_current(fleet.minds, vehicle)
+    place = get_whereabouts(fleet.minds, vehicle)
     state = vessel.north + vessel.east + vessel.depth + vessel.heading + vessel.surge + vessel.sway
     asked = reference.heading + reference.speed + reference.depth
     flowing, believed = water.north + water.east, place.north + place.east
-    drift = observed.north + observed.east
     code = where(state - state == 0.0, FINE, STATE)
     code = where(asked - asked == 0.0, code, REFERENCE)
-    code = where(drift - drift == 0.0, code, OBSERVED)
     code = where(believed - believed == 0.0, code, BELIEF)
     code = where(flowing - flowing == 0.0, code, CURRENT)
     first = (code > FINE) & (load(fleet.trouble, CODE) == FINE)
