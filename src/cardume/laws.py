@@ -128,8 +128,8 @@ _families: dict[str, "Family"] = {}
 class Family:
     """A kind of law: what all its members receive and return, and the verb that calls them."""
 
-    def __init__(self, name: str, signals: tuple[Any, ...], result: Any) -> None:
-        self.name, self.signals, self.result = name, signals, result
+    def __init__(self, name: str, signals: tuple[Any, ...], result: Any, plain: str | None = None) -> None:
+        self.name, self.signals, self.result, self.plain = name, signals, result, plain
         self.place = FAMILIES.index(name)
         self.laws: dict[str, Law] = {}
         _families[name] = self
@@ -159,7 +159,7 @@ class Family:
 
 
 def law_family(
-    name: str, signals: tuple[Any, ...], result: Any = float
+    name: str, signals: tuple[Any, ...], result: Any = float, plain: str | None = None
 ) -> tuple[Callable[[Callable[..., Any]], "Law"], Callable[..., Any]]:
     """Make a family.
 
@@ -167,11 +167,12 @@ def law_family(
         name: [-] one of FAMILIES, the mission key.
         signals: [-] record classes that its laws may ask for.
         result: [-] float, a record class or a tuple of them.
+        plain: [-] the field of that record which a law means that returns one number; the others are then NaN.
 
     Returns:
         The decorator for its laws, and the verb by which compiled code calls them.
     """
-    family = Family(name, signals, result)
+    family = Family(name, signals, result, plain)
     return family.decorator(), family.verb()
 
 
@@ -362,15 +363,22 @@ class Law:
         made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function, body))
         name = f"{self.family}_{self.name}_{made_of}_{rows.name}"
         scope = {"__name__": __name__, "law": with_compiled_helpers(self.function), "Memory": self.memory_type}
-        scope |= {"load": load, "store": store, "at": at, "as_answer": law_answer(self._family.result)}
+        scope |= {
+            "load": load,
+            "store": store,
+            "at": at,
+            "as_answer": law_answer(self._family.result, self._family.plain),
+        }
         exec(compile(f"def {name}({signals}, gains, memory, dt):\n{body}", __file__, "exec"), scope)
         return scope[name]
 
     def _try_once(self) -> None:
         """Call a user's law in Python and look at what it returns, before Numba says it in its own words."""
-        required = f"it must return {_shape(self._family.result)}"
+        required = f"it must return {_shape(self._family)}"
         if self.memory_type is not None:
             required += f" and the next {self.memory_type.__name__}, as a pair"
+        if self._family.plain:
+            required += f" (or {_record_shape(self._family.result)} in the number's place)"
         try:
             first, second = self._sample_call(), self._sample_call()
         except Exception as problem:
@@ -383,13 +391,20 @@ class Law:
             if not (isinstance(first, tuple) and len(first) == 2 and isinstance(first[1], self.memory_type)):
                 raise LawError(f"{self.family} law '{self.name}' returned {first!r}; {required}")
             answer = first[0]
-        if not _fits(answer, self._family.result):
+        if not (_fits(answer, self._family.result) or (self._family.plain and _fits(answer, float))):
             raise LawError(f"{self.family} law '{self.name}' returned {answer!r}; {required}")
         if not _same(first, second):
             raise LawError(
                 f"{self.family} law '{self.name}' gave {first!r}, then {second!r}, for the same input:"
                 f" a law is a pure function of its arguments"
             )
+
+    def sample_answer(self) -> Any:
+        """What the law returns for plausible input, without its memory: as the record of its family, if it has one."""
+        answer = self._sample_call()
+        answer = answer if self.memory_type is None else answer[0]
+        plain = self._family.plain
+        return answer if plain is None or isinstance(answer, tuple) else self._family.result(**{plain: answer})
 
     def _sample_call(self) -> Any:
         samples: dict[str, Any] = {f"signal_{k}": _sample(kind) for k, kind in enumerate(self._family.signals)}
@@ -451,8 +466,12 @@ def _same(first: Any, second: Any) -> bool:
     return np.array_equal(list(numbers(first)), list(numbers(second)), equal_nan=True)
 
 
-def _shape(result: Any) -> str:
-    return "a number" if result is float else f"{result.__name__}({', '.join(result._fields)})"
+def _shape(family: Family) -> str:
+    return "a number" if family.result is float or family.plain else _record_shape(family.result)
+
+
+def _record_shape(record: Any) -> str:
+    return f"{record.__name__}({', '.join(record._fields)})"
 
 
 def _last_words(problem: Exception) -> str:

@@ -185,6 +185,21 @@ class PathError(NamedTuple):
     path: Rows = np.zeros(20)  # (n,) path table
 
 
+class Pace(NamedTuple):
+    """How fast the formation and coordination want a vehicle to come along its path."""
+
+    speed: float = 0.0  # [m/s] along its own path, h (v_L + correction)
+
+
+class Demand(NamedTuple):
+    """What a guidance law asks for: a course, else a heading, else a yaw rate; NaN where it does not ask."""
+
+    course: float = NOTHING  # [rad] over ground; compensation makes a heading of it
+    heading: float = NOTHING  # [rad] past compensation
+    yaw_rate: float = NOTHING  # [rad/s] past compensation, in the place of any heading
+    speed: float = NOTHING  # [m/s] through the water, past coordination and compensation
+
+
 class Course(NamedTuple):
     """What guidance and coordination want: a direction of travel over ground, and a speed."""
 
@@ -200,6 +215,7 @@ class Reference(NamedTuple):
     heading: float = 0.0  # [rad]
     speed: float = 0.0  # [m/s] through the water
     depth: float = 0.0  # [m]
+    yaw_rate: float = NOTHING  # [rad/s] in the place of the heading; NaN: the heading is wanted
 
 
 class Feedback(NamedTuple):
@@ -212,6 +228,7 @@ class Feedback(NamedTuple):
     reference_heading: float = 0.0  # [rad]
     reference_speed: float = 0.0  # [m/s]
     reference_depth: float = 0.0  # [m]
+    reference_yaw_rate: float = NOTHING  # [rad/s] in the place of the heading; NaN: the heading is wanted
 
 
 class Command(NamedTuple):

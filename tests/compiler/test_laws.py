@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pickle
 import random
 import re
@@ -33,7 +34,7 @@ from cardume.maths import atan2
 from cardume.onboard.compensation import compensation_law
 from cardume.onboard.compensation.base import Steering
 from cardume.onboard.guidance import guidance_law, guide, line_of_sight
-from cardume.signals import Course, GnssReading, Motion, PathError, VesselState
+from cardume.signals import NOTHING, Course, Demand, GnssReading, Motion, Pace, PathError, VesselState
 from cardume.world.sensors import gnss_sensor
 
 KEPT = {"name": "mine"}
@@ -154,7 +155,9 @@ def test_a_parameter_needs_a_default() -> None:
 
 
 def test_a_law_has_one_memory() -> None:
-    with pytest.raises(LawError, match=r"'mine' has two records.*Sum and Ring; signals are PathError, and one memory"):
+    with pytest.raises(
+        LawError, match=r"'mine' has two records.*Sum and Ring; signals are PathError, Motion, Pace, and one memory"
+    ):
 
         @guidance_law
         def mine(error: PathError, one: Sum, two: Ring) -> float:
@@ -264,11 +267,16 @@ def remembering(error: PathError, memory: Ring, gain: Number = 10.0) -> tuple[fl
 
 
 @njit
-def steer_once(handles: np.ndarray, gains: np.ndarray, memory: np.ndarray, slot: int, cross_track: float) -> float:
+def ask_once(handles: np.ndarray, gains: np.ndarray, memory: np.ndarray, slot: int, cross_track: float) -> Any:
     book = LawBook(rows_of(handles), rows_of(gains), rows_of(memory), 0.1)
     path = rows_of(gains)
     error = PathError(0.0, 0.0, cross_track, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.5, path)
-    return guide(book, slot, error)
+    motion = Motion(0.3, 0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0)
+    return guide(book, slot, error, motion, Pace(0.5))
+
+
+def steer_once(handles: np.ndarray, gains: np.ndarray, memory: np.ndarray, slot: int, cross_track: float) -> float:
+    return float(ask_once(handles, gains, memory, slot, cross_track).course)
 
 
 def book_of(law: Law, slots: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -307,6 +315,27 @@ def raising(error: PathError) -> float:
 
 def test_a_whole_number_is_widened() -> None:
     assert steer_once(*book_of(integer, 1), 0, 0.0) == 2.0
+
+
+@guidance_law
+def turning(motion: Motion, error: PathError, pace: Pace) -> Demand:
+    """Asks for a yaw rate and a speed. Source: this test."""
+    return Demand(NOTHING, NOTHING, -0.1 * error.cross_track - motion.heading, 2.0 * pace.speed)
+
+
+def test_a_number_is_the_course_and_nothing_else_is_asked_for() -> None:
+    demand = np.array(ask_once(*book_of(integer, 1), 0, 0.0))
+    assert demand[0] == 2.0
+    assert np.isnan(demand[1:]).all()
+    assert integer.sample_answer() == pytest.approx((2.0, math.nan, math.nan, math.nan), nan_ok=True)
+
+
+def test_a_law_may_ask_for_a_yaw_rate_and_a_speed() -> None:
+    demand = tuple(ask_once(*book_of(turning, 1), 0, 2.0))
+    assert demand[2:] == (-0.5, 1.0)
+    assert np.isnan(demand[:2]).all()
+    assert turning.handle(lanes=True) > 0
+    assert turning.sample_answer().yaw_rate == -0.55
 
 
 def test_an_exception_in_a_law_comes_out_as_it_is() -> None:

@@ -23,6 +23,7 @@ class Wanted(NamedTuple):
     heading: float = 0.0
     speed: float = 0.5
     depth: float = 0.0
+    yaw_rate: float = math.nan
 
 
 class Flight(NamedTuple):
@@ -163,6 +164,16 @@ def test_a_dive(depth: float) -> None:
     assert flight.depth.max() < depth + 0.12
     assert settled(flight.time, flight.depth - depth, 0.12) < 8.0 + 2.0 * depth
     assert np.abs(flight.depth[-100:] - depth).max() < 0.1
+
+
+@pytest.mark.parametrize("turn", [1.0, -1.0])
+@pytest.mark.parametrize("speed", [0.15, 0.5, 0.7, 0.9])
+def test_a_yaw_rate_is_followed_as_one(speed: float, turn: float) -> None:
+    """No heading counts then: the vehicle turns past the wanted 1 rad; at 0.9 m/s it turns 5 % too slowly."""
+    rate = turn * 0.08
+    flight = fly(Wanted(1.0, speed, yaw_rate=rate), 30.0, VesselState(surge=speed))
+    assert settled(flight.time, flight.yaw_rate - rate, 0.1 * abs(rate)) < 5.0
+    assert flight.yaw_rate[-100:].mean() == pytest.approx(rate, rel=0.05)
 
 
 def test_wrong_beliefs_about_heave_cost_little() -> None:

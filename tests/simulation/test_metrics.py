@@ -85,9 +85,14 @@ def first_settled(flight: Flight, name: str) -> int:
 
 def counted(flight: Flight, name: str) -> np.ndarray:
     """Which ticks count for a vehicle: after its transient, before the end of its path."""
+    under_way = on_the_way(flight, name)
+    return (np.arange(len(under_way)) >= first_settled(flight, name)) & under_way
+
+
+def on_the_way(flight: Flight, name: str) -> np.ndarray:
+    """In which ticks a vehicle has not yet been at the end of its path."""
     gamma = column(flight, "coordination_state", name) + OFFSETS[name][1]
-    finished = np.logical_or.accumulate(gamma >= LENGTH)
-    return (np.arange(len(gamma)) >= first_settled(flight, name)) & ~finished
+    return ~np.logical_or.accumulate(gamma >= LENGTH)
 
 
 def rms(values: np.ndarray) -> float:
@@ -111,6 +116,14 @@ def test_cross_track(flight: Flight, metrics: Metrics, name: str) -> None:
     exact = float(np.quantile(np.abs(error[counts]), 0.95))
     assert found["cross_track_p95"] == pytest.approx(exact, abs=1.5 * bin_width(exact))
     assert found["settling_time"] == pytest.approx((first_settled(flight, name) + 1) * DT - HOLD, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", OFFSETS)
+def test_integral_of_the_absolute_error(flight: Flight, metrics: Metrics, name: str) -> None:
+    """From the start on, with the transient, in rectangles, to the end of the path."""
+    error = np.abs(column(flight, "cross_track", name))[on_the_way(flight, name)]
+    assert error[0] > 0.5  # there is a transient
+    assert metrics.vehicles[name]["cross_track_iae"] == pytest.approx(DT * error.sum(), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", OFFSETS)

@@ -12,7 +12,7 @@ from cardume.laws import Law
 from cardume.onboard.control import feedforward_pid, none
 from cardume.onboard.control.feedforward_pid import Helm
 from cardume.onboard.estimation.speed import proportional, thruster_calibration
-from cardume.signals import Command, Feedback, Reference, ShaftReading, VesselState, Water
+from cardume.signals import NOTHING, Command, Feedback, Reference, ShaftReading, VesselState, Water
 from cardume.vehicles import kinematic, medusa
 from cardume.vehicles.thrusters import SLOTS, Thrusters
 
@@ -40,7 +40,7 @@ def flight(*compile_laws: Callable[..., Any]) -> Callable[..., None]:
             f"        t = {records('Thrusters', RING, VESSEL + HELM)}, at(rows, {RING_AT}))",
             "        surge = read(ShaftReading(v.shaft_speed))",
             "        wanted = load(asked, 0), load(asked, 1), load(asked, 2)",
-            "        f = Feedback(v.heading, v.yaw_rate, surge, v.depth, wanted[0], wanted[1], wanted[2])",
+            "        f = Feedback(v.heading, v.yaw_rate, surge, v.depth, wanted[0], wanted[1], wanted[2], NOTHING)",
             "        command, h = steer(f, h, 0.05)",
             "        v, t = move(v, command, Water(load(asked, 3), load(asked, 4)), t, 0.05)",
             *[f"        store(rows, {k}, {value})" for k, value in enumerate(stores)],
@@ -54,6 +54,7 @@ def flight(*compile_laws: Callable[..., Any]) -> Callable[..., None]:
         "steer": steer,
         "move": move,
         "read": read,
+        "NOTHING": NOTHING,
         **{record.__name__: record for record in (VesselState, Helm, Thrusters, ShaftReading, Feedback, Water)},
     }
     exec(source, scope)

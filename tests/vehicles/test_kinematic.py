@@ -60,6 +60,30 @@ def test_a_lag_is_exact_whatever_the_step(dt: float) -> None:
     assert vessel.surge == pytest.approx(0.8 - 0.6 * math.exp(-1.5), abs=1e-12)
 
 
+@given(headings, st.floats(-0.5, 0.5), st.floats(0.05, 2.0))
+def test_a_yaw_rate_is_had_at_once_and_flown_as_an_arc(before: float, rate: float, dt: float) -> None:
+    asked = reference(99.0, 0.8)._replace(yaw_rate=rate)
+    vessel = kinematic(VesselState(heading=before), asked, STILL, dt, 3.0)  # no lag of heading is in it
+    assert vessel.heading == pytest.approx(before + rate * dt, abs=1e-12)
+    assert vessel.yaw_rate == pytest.approx(rate, abs=1e-9)
+    half = 0.5 * rate * dt
+    chord = 0.8 * dt * (math.sin(half) / half if half else 1.0)
+    simpson = 0.8 * dt * half**4 / 175.0 + 1e-12  # its error is that over 180
+    assert vessel.north == pytest.approx(chord * math.cos(before + half), abs=simpson)
+    assert vessel.east == pytest.approx(chord * math.sin(before + half), abs=simpson)
+
+
+@given(headings, headings, st.floats(0.01, 3.0), st.booleans())
+def test_it_turns_no_faster_than_it_can(before: float, wanted: float, limit: float, by_rate: bool) -> None:
+    asked = reference(wanted, 1.0)._replace(yaw_rate=wanted if by_rate else math.nan)
+    vessel = kinematic(VesselState(heading=before), asked, STILL, 0.1, yaw_rate_max=limit)
+    free = kinematic(VesselState(heading=before), asked, STILL, 0.1)
+    turned = min(max(free.heading - before, -0.1 * limit), 0.1 * limit)
+    assert vessel.heading == pytest.approx(before + turned, abs=1e-12)
+    if vessel.heading == free.heading:
+        assert vessel == free
+
+
 def lagging(dt: float) -> np.ndarray:
     vessel = VesselState(heading=2.9, surge=0.2)
     for _ in range(round(4.0 / dt)):

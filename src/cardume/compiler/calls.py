@@ -5,6 +5,7 @@ Numba's own calling convention, so that exceptions propagate.  A law that does n
 lanes is called once per lane; its handle is then negative.  Handles live in one process only.
 """
 
+import math
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -13,7 +14,7 @@ from llvmlite import ir
 from numba import config, types
 from numba.core import cgutils
 
-from cardume.compiler.lanes import INT32, INT64, LANES, WIDTH
+from cardume.compiler.lanes import INT32, INT64, LANES, WIDTH, widened
 from cardume.compiler.primitive import primitive
 from cardume.compiler.rows import (
     ELEMENTS,
@@ -102,26 +103,35 @@ def _call_lanes(
 
 
 @cache
-def law_answer(result: Any) -> Callable[..., Any]:
+def law_answer(result: Any, plain: str | None = None) -> Callable[..., Any]:
     """A function (rows, answer) that makes what a law returned as wide as the rows it was given.
 
     Args:
         result: float, a record class, or a tuple of them.
+        plain: the field that a law means which returns one number; the others are then NaN. None: it may not.
     """
+    fields = result._fields if plain else ()
 
     def as_answer(rows: Rows, answer: Any) -> Any:
-        return answer
+        if plain is None or isinstance(answer, tuple):
+            return answer
+        return result(*[answer if field == plain else math.nan for field in fields])
 
     def typed(rows: Any, answer: Any) -> Any:
         wanted = record_type(result, rows)
         fits = not isinstance(wanted, types.BaseTuple) or (
-            isinstance(answer, types.BaseTuple) and len(answer) == len(wanted)
+            len(answer) == len(wanted) if isinstance(answer, types.BaseTuple) else plain is not None
         )
         return wanted(rows, answer) if fits else None
 
     @primitive(as_answer, typed)
     def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-        return as_law_sees(c, b, arguments[1], signature.args[1], signature.return_type)
+        (_, given), wanted, answer = signature.args, signature.return_type, arguments[1]
+        if plain is None or isinstance(given, types.BaseTuple):
+            return as_law_sees(c, b, answer, given, wanted)
+        number, nothing = ir.Constant(ir.DoubleType(), math.nan), types.float64
+        parts = [(answer, given) if field == plain else (number, nothing) for field in fields]
+        return c.make_tuple(b, wanted, [widened(c, b, *part, wanted.types[0]) for part in parts])
 
     return as_answer
 

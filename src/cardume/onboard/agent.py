@@ -4,7 +4,7 @@ from cardume.compiler import Rows, compiled, load, some, where
 from cardume.maths import atan2, clip, hypot
 from cardume.onboard.compensation import compensate as choose_heading
 from cardume.onboard.coordination import correct_speed
-from cardume.onboard.guidance import guide as choose_course
+from cardume.onboard.guidance import guide as ask_guidance
 from cardume.onboard.mind import (
     Correction,
     Mind,
@@ -22,7 +22,17 @@ from cardume.onboard.navigation import (
 from cardume.onboard.neighborhood import Said, look_around, predict_neighbors, report
 from cardume.paths.projection import point_at
 from cardume.paths.table import LENGTH_OWN
-from cardume.signals import Course, Disagreement, Measured, Motion, PathError, Reference
+from cardume.signals import (
+    NOTHING,
+    Course,
+    Demand,
+    Disagreement,
+    Measured,
+    Motion,
+    Pace,
+    PathError,
+    Reference,
+)
 
 HOLD_RADIUS = 1.0  # [m] within which a vehicle that holds the end point rests
 HOLD_GAIN = 0.2  # [1/s] speed per distance when it comes back to it
@@ -50,9 +60,9 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
     error = locate(mind, position, motion, current)
     look_around(mind, measured, position, motion, error, time)
     others = predict_neighbors(mind, heard, error, time)
-    course = guide(mind, error)
     along = progress(mind, error, coordinate(mind, others))
-    reference = compensate(mind, error, Course(course, along, get_setup(mind.own, 0).over_ground), motion)
+    demand = guide(mind, error, motion, along)
+    reference = compensate(mind, error, demand, along, motion)
     return reference, report(mind, measured, time)
 
 
@@ -65,14 +75,21 @@ def coordinate(mind: Mind, others: Disagreement) -> float:
 
 
 @compiled
-def guide(mind: Mind, error: PathError) -> float:
-    """Desired course [rad]; past the end, if the vehicle stays, the bearing of the end point."""
-    course = choose_course(mind.book, 0, error)
+def guide(mind: Mind, error: PathError, motion: Motion, along: float) -> Demand:
+    """What the guidance law asks for; past the end, if the vehicle stays, the bearing of the end point.
+
+    Args:
+        mind: of the vehicle.
+        error: where it is on its path.
+        motion: how it believes it moves.
+        along: [m/s] how fast it is to go along its path.
+    """
+    demand = ask_guidance(mind.book, 0, error, motion, Pace(along))
     stays = _stays(mind, error)
     if some(stays):
         _, bearing = _to_the_end(mind, error)
-        course = where(stays, bearing, course)
-    return course
+        demand = where(stays, Demand(bearing, NOTHING, NOTHING, NOTHING), demand)
+    return demand
 
 
 @compiled
@@ -94,12 +111,37 @@ def progress(mind: Mind, error: PathError, correction: float) -> float:
 
 
 @compiled
-def compensate(mind: Mind, error: PathError, course: Course, motion: Motion) -> Reference:
-    """Heading and speed that give the course and the speed in this current: (36) corrected."""
-    steering = choose_heading(mind.book, 0, course, motion)
+def compensate(mind: Mind, error: PathError, demand: Demand, along: float, motion: Motion) -> Reference:
+    """Heading and speed that give the course and the speed in this current: (36) corrected.
+
+    A heading, a yaw rate or a speed that guidance asked for itself stays as it is. Where it asked for
+    nothing the course is not a number, which ends the mission.
+
+    Args:
+        mind: of the vehicle.
+        error: where it is on its path.
+        demand: of guidance.
+        along: [m/s] wanted along the path.
+        motion: how it believes it moves.
+    """
     setup = get_setup(mind.own, 0)
+    turns = demand.yaw_rate == demand.yaw_rate
+    course = given(demand.course, where(turns, motion.heading, demand.heading))
+    steering = choose_heading(mind.book, 0, Course(course, along, setup.over_ground), motion)
+    heading = where(turns, motion.heading, given(demand.heading, steering.heading))
     depth = setup.depth * (1.0 - setup.surfaces * error.finished)
-    return Reference(course.course, steering.heading, steering.speed, depth)
+    return Reference(course, heading, given(demand.speed, steering.speed), depth, demand.yaw_rate)
+
+
+@compiled
+def given(value: float, otherwise: float) -> float:
+    """A number if it is one, else another.
+
+    Args:
+        value: [any] NaN where nothing is asked for.
+        otherwise: [any] what stands in then.
+    """
+    return where(value == value, value, otherwise)
 
 
 @compiled

@@ -36,6 +36,7 @@ METRICS = {
     "cross_track_max": Metric("m", "true cross-track error, largest after the transient"),
     "cross_track_rms_lines": Metric("m", "true cross-track error on lines, root mean square after the transient"),
     "cross_track_rms_arcs": Metric("m", "true cross-track error on arcs, root mean square after the transient"),
+    "cross_track_iae": Metric("m s", "integral of |true cross-track error| from the start to the end of the path"),
     "settling_time": Metric("s", "when the transient ended"),
     "position_error_rms": Metric("m", "believed minus true position, horizontal, root mean square"),
     "current_error_rms": Metric("m/s", "believed minus true current, horizontal, root mean square"),

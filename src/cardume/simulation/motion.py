@@ -52,4 +52,5 @@ def feedback_of(held: Held, surge: float, reference: Reference, ahead: float) ->
         reference.heading,
         reference.speed,
         reference.depth,
+        reference.yaw_rate,
     )

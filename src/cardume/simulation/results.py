@@ -65,6 +65,7 @@ def _of_path(score: Score, histograms: np.ndarray, tick: float) -> dict[str, flo
         "cross_track_max": score.cross_track_max if counted else math.nan,
         "cross_track_rms_lines": _rms(score.line_squares, score.line_time),
         "cross_track_rms_arcs": _rms(score.arc_squares, score.arc_time),
+        "cross_track_iae": score.absolute_error,
         "settling_time": score.settling_time if score.settled else math.nan,
         "position_error_rms": _rms(score.position_squares, score.flown),
         "current_error_rms": _rms(score.current_squares, score.flown),

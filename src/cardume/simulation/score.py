@@ -1,7 +1,8 @@
 """Metrics, summed tick by tick as the mission flies; nothing needs hindsight.
 
 A vehicle's transient is over when |e| has been below the threshold for the hold time; until then
-only `settling_time` counts, and after the end of its path nothing about the path does.
+only `settling_time` and `cross_track_iae` count, and after the end of its path nothing about the
+path does.
 """
 
 from typing import NamedTuple
@@ -53,6 +54,7 @@ class Score(NamedTuple):
     last_yaw_rate: float = 0.0  # [rad/s]
     swept: float = 0.0  # [m] length of path, weighted by how much of its swath was swept
     farthest: float = 0.0  # [m] coordination state so far
+    absolute_error: float = 0.0  # [m s] of the cross-track error, from the start
 
 
 class Formation(NamedTuple):
@@ -138,6 +140,7 @@ def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time
         vessel.yaw_rate,
         before.swept + advance * covers,
         where(advance > 0.0, state, farthest),
+        before.absolute_error + where(on_path.finished < 0.5, dt * error, 0.0),
     )
     put_score(fleet.scores, vehicle, after)
     tally(fleet, vehicle, CROSS_TRACK, error, counted > 0.0)

@@ -1,11 +1,13 @@
 """The paper's vehicle: it has the heading, speed and depth that are asked of it, at once or after a lag."""
 
-from cardume.compiler import compiled, where
-from cardume.laws import NotNegative, Seconds
-from cardume.maths import maximum, to_ned, unwrap_near
+from cardume.compiler import compiled, some, where
+from cardume.laws import NotNegative, Positive, RadiansPerSecond, Seconds
+from cardume.maths import clip, maximum, to_ned, unwrap_near
 from cardume.maths.integrators import remaining, simpson_mean
 from cardume.signals import Reference, VesselState, Water
 from cardume.vehicles.base import vehicle_model
+
+UNLIMITED = 1e9  # [rad/s]
 
 
 @compiled
@@ -53,10 +55,12 @@ def kinematic(
     dt: Seconds,
     heading_time_constant: NotNegative[Seconds] = 0.0,
     speed_time_constant: NotNegative[Seconds] = 0.0,
+    yaw_rate_max: Positive[RadiansPerSecond] = UNLIMITED,
 ) -> VesselState:
     """One plant step of a vehicle without dynamics.
 
     p' = R(psi) (u, 0) + Vc,   T psi' = psi_ref - psi,   T_u u' = u_ref - u,   z = z_ref
+    psi' = r_ref  where a yaw rate is asked for instead of a heading;   |psi'| <= yaw_rate_max
 
     With T = T_u = 0, the paper's vehicle, heading and speed are the references from the start of the
     step on. It turns the shorter way round, and its heading is never wrapped. yaw_rate and heave are
@@ -65,11 +69,13 @@ def kinematic(
 
     Args:
         vessel: state before the step.
-        reference: heading [rad], speed through the water [m/s], depth [m]; the surface stops a climb.
+        reference: heading [rad] or yaw rate [rad/s], speed through the water [m/s], depth [m]; the surface
+            stops a climb.
         water: current [m/s], held over the step.
         dt: [s] plant step.
         heading_time_constant: [s] T >= 0.
         speed_time_constant: [s] T_u >= 0.
+        yaw_rate_max: [rad/s] how fast it can turn; a step is turned evenly where that limits it.
 
     Returns:
         The state after the step.
@@ -79,6 +85,17 @@ def kinematic(
     """
     wanted = unwrap_near(reference.heading, vessel.heading)
     headings = approached(vessel.heading, wanted, heading_time_constant, dt)
+    turns, is_limited = reference.yaw_rate == reference.yaw_rate, yaw_rate_max < UNLIMITED
+    if some(turns | is_limited):
+        turned = where(turns, dt * reference.yaw_rate, headings[2] - vessel.heading)
+        slowed = clip(turned, -dt * yaw_rate_max, dt * yaw_rate_max)
+        evenly = turns | (slowed != turned)
+        middle = where(evenly, vessel.heading + 0.5 * slowed, headings[1])
+        headings = (
+            where(evenly, vessel.heading, headings[0]),
+            middle,
+            where(evenly, vessel.heading + slowed, headings[2]),
+        )
     speeds = approached(vessel.surge, reference.speed, speed_time_constant, dt)
     north, east = mean_velocity(headings, speeds)
     depth = maximum(reference.depth, 0.0)

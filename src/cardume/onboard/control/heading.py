@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from cardume.compiler import compiled, where
+from cardume.compiler import compiled, negate, where
 from cardume.maths import clip, wrap_angle
 from cardume.signals import Feedback
 from cardume.vehicles.hull import drag, sway_step
@@ -100,7 +100,8 @@ def steer_heading(
     N = kp(u) (psi_ref - psi) + kd(u) (z - r) + N_turn(z, u) + share (m_v - m_u) u v + s
     kp(u) = kp / (1 + (u / 0.9)^2),   kd(u) = kd (1 + (u / 1.4)^2)
 
-    z is how fast the reference turns (`track_turn`), v the estimated sway, s the integral.
+    z is how fast the reference turns (`track_turn`), v the estimated sway, s the integral. Where a yaw rate
+    is wanted instead of a heading it is z, and no error of the heading counts.
 
     Args:
         feedback: heading and yaw rate, measured; the wanted heading. NaN counts as no error.
@@ -115,8 +116,10 @@ def steer_heading(
     heading, rate = track_turn(
         state.turn_heading, state.turn_rate, feedback.reference_heading, gains.turn_bandwidth, gains.jump, dt
     )
+    turns = feedback.reference_yaw_rate == feedback.reference_yaw_rate
+    rate = where(turns, feedback.reference_yaw_rate, rate)
     knows = (feedback.heading == feedback.heading) & (feedback.yaw_rate == feedback.yaw_rate)
-    error = where(knows, wrap_angle(feedback.reference_heading - feedback.heading), 0.0)
+    error = where(knows & negate(turns), wrap_angle(feedback.reference_heading - feedback.heading), 0.0)
     yaw_rate = where(knows, feedback.yaw_rate, rate)
     surge_squared = surge * surge
     munk = gains.sway_share * (gains.sway_mass - gains.surge_mass) * surge * state.sway
