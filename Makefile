@@ -76,8 +76,8 @@ setup: $(VENV)/core
 setup-dev: $(VENV)/dev
 
 $(VENV)/core: $(VENV)/made-in pyproject.toml constraints.txt
-	@$(SAY) "installing cardume and what it needs to run (downloads about 125 MB the first time)"
-	@$(BIN)/python -m pip install --quiet --editable .
+	@$(SAY) "installing cardume, what it needs to run, and what draws its report (downloads about 135 MB the first time)"
+	@$(BIN)/python -m pip install --quiet --editable '.[report]'
 	@touch $@
 
 $(VENV)/dev: $(VENV)/core

@@ -50,6 +50,8 @@ class Stage:
 def make_mission() -> SimpleNamespace:
     """As much of a mission as the command line looks at."""
     law = SimpleNamespace(name="line_of_sight", parameters={"lookahead": 5.0})
+    unknown = SimpleNamespace(name="my_lab.laws:mine", parameters={})
+    vehicle = SimpleNamespace(guidance=SimpleNamespace(law=law), model=unknown, autopilot=unknown)
     return SimpleNamespace(
         name="figure-5",
         seed=7,
@@ -58,7 +60,7 @@ def make_mission() -> SimpleNamespace:
         require=(),
         transient=SimpleNamespace(threshold=0.5, hold=10.0),
         current=SimpleNamespace(name="uniform", parameters={"speed": 0.1, "towards": math.pi / 3}),
-        vehicles=(SimpleNamespace(guidance=SimpleNamespace(law=law)),),
+        vehicles=(vehicle,),
         to_yaml=lambda directory=None: "cardume: 1\nname: figure-5\n",
     )
 

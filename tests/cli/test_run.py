@@ -18,7 +18,7 @@ from cli.stand_ins import Result, Stage
 from report.synthetic import make_flight, without_settling
 
 Cardume = Callable[..., Result]
-FILES = {"log.nc", "mission.yaml", "summary.json", "figures"}
+FILES = {"log.nc", "mission.yaml", "report.html", "summary.json", "figures"}
 
 
 def require(metric: str, limit: float, vehicle: str | None = None) -> Requirement:
@@ -75,7 +75,7 @@ def test_options_reach_the_mission(stage: Stage, cardume: Cardume, tmp_path: Pat
     given = ["--seed", "9", "--set", "a=1", "--set", "b=2", "--allow-code", str(tmp_path), "--no-figures", "-q"]
     assert cardume("run", "paper/figure-5", *given) == Result(0, "", "")
     assert stage.opened == [("paper/figure-5", ["a=1", "b=2"], 9, [tmp_path])]
-    assert set(os.listdir("runs/figure-5/001")) == FILES - {"figures"}
+    assert set(os.listdir("runs/figure-5/001")) == FILES - {"figures", "report.html"}
 
 
 def test_json_is_the_summary_and_nothing_else(stage: Stage, cardume: Cardume) -> None:
@@ -93,6 +93,7 @@ def test_json_is_the_summary_and_nothing_else(stage: Stage, cardume: Cardume) ->
         [
             "log.nc",
             "mission.yaml",
+            "report.html",
             "summary.json",
             *(f"figures/{n}.{e}" for n in ("errors", "plan") for e in ("png", "svg")),
         ]
@@ -141,7 +142,7 @@ def test_a_figure_that_cannot_be_drawn_does_not_lose_the_flight(
     code, out, err = cardume("run", "paper/figure-5")
     assert code == 4
     assert "Written to runs/figure-5/001" in out
-    assert "the figures could not be drawn" in err
+    assert "figures or report could not be drawn" in err
     assert "Traceback" not in out + err
     kept = next((tmp_path / "state" / "cardume").glob("bug-*.txt"))
     assert str(kept) in err

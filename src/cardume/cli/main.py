@@ -20,6 +20,7 @@ import click
 from cardume.cli.check import check
 from cardume.cli.list import list_
 from cardume.cli.new import new
+from cardume.cli.report import report
 from cardume.cli.run import run
 from cardume.cli.stopping import Stopped
 from cardume.errors import CardumeError
@@ -66,7 +67,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, list_, new):
+for _command in (run, check, report, list_, new):
     cli.add_command(_command)
 
 

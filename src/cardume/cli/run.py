@@ -61,7 +61,7 @@ class Request(NamedTuple):
 def run(**given: Any) -> int:
     """Fly MISSION: a mission file, a path file, or a built-in mission (cardume list missions).
 
-    Keeps the log, the numbers, the resolved mission and two figures, and says what they mean.
+    Keeps the log, the numbers, the resolved mission, figures and a report to look at, and says what they mean.
 
     \b
     Exit code 0: done, and what the mission requires is met; 1: requirements missed;
@@ -86,7 +86,7 @@ def _run(request: Request, stopping: Stopping) -> int:
             progress(stage, done, total)
 
         flight = fly_mission(mission, progress=note, should_stop=stopping.is_asked, allow_code=request.allow_code)
-    drawing = Drawing(flight, stopping)
+    drawing = Drawing(mission, flight, stopping)
     try:
         directory, summary = write_results(
             destination, mission, flight, version=_version(), draw=None if request.no_figures else drawing
@@ -96,23 +96,32 @@ def _run(request: Request, stopping: Stopping) -> int:
             _say_numbers(mission, flight)
         raise
     _report(request, mission, flight, directory, summary)
+    if drawing.lacking and request.is_talkative:
+        click.echo(f"\nnote: {drawing.lacking}", err=True)
     return _exit_code(flight, summary, drawing, stopping)
 
 
 class Drawing:
-    """Draws the figures; a flight is not lost for a figure that cannot be drawn."""
+    """Draws figures and report; a flight is not lost for a picture that cannot be drawn."""
 
-    def __init__(self, flight: "Flight", stopping: Stopping) -> None:
-        self.flight, self.stopping = flight, stopping
+    def __init__(self, mission: "Mission", flight: "Flight", stopping: Stopping) -> None:
+        self.mission, self.flight, self.stopping = mission, flight, stopping
         self.problem: Exception | None = None
+        self.lacking = ""  # why there is no report
 
     def __call__(self, folder: Path) -> None:
         if self.stopping.is_asked():
             return  # whoever pressed Ctrl-C does not want to wait for pictures
+        from cardume.missions.runs import run_of
         from cardume.report.figures import save_figures
+        from cardume.report.page.page import FILE_NAME, LibraryMissing, write_page
 
         try:
-            save_figures(self.flight, folder)
+            save_figures(self.flight, folder / "figures")
+            text = (folder / "mission.yaml").read_text(encoding="utf-8")
+            write_page(folder / FILE_NAME, run_of(self.mission, self.flight, text, _version()))
+        except LibraryMissing as problem:
+            self.lacking = str(problem)
         except OSError:
             raise
         except Exception as problem:
@@ -128,7 +137,9 @@ def _exit_code(flight: "Flight", summary: dict[str, Any], drawing: Drawing, stop
         from cardume.cli.bugs import save_traceback
 
         where = save_traceback(drawing.problem)
-        click.echo(f"error: the figures could not be drawn, a bug in cardume; the details are in {where}", err=True)
+        click.echo(
+            f"error: figures or report could not be drawn, a bug in cardume; the details are in {where}", err=True
+        )
         return BUG
     return MISSED if summary["requirements_met"] is False else DONE
 

@@ -3,18 +3,18 @@
 DIR/log.nc          the flight, row by row
 DIR/summary.json    its numbers and the verdict
 DIR/mission.yaml    the mission with every default written
-DIR/figures/        what the caller draws
+DIR/figures/, DIR/report.html    what the caller draws
 """
 
 import errno
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cardume.errors import CardumeError, DataError, InputError
-from cardume.missions.atomic import new_directory, renewed_directory
+from cardume.missions.atomic import new_directory, renewed_directory, write_file
 from cardume.missions.log import write_log
 from cardume.missions.mission import Mission
 from cardume.missions.summary import FILE_NAME, judge, read_summary, summarize, to_json
@@ -77,7 +77,7 @@ def write_results(
         mission: as flown.
         flight: what was flown, however it ended.
         version: of cardume.
-        draw: fills the folder it is given with figures.
+        draw: adds pictures to the folder of the run, in which log and mission are already.
 
     Returns:
         The directory, and the summary as written there.
@@ -116,13 +116,27 @@ def _fill(
     (folder / "mission.yaml").write_text(resolved, encoding="utf-8")
     write_log(folder / "log.nc", flight, mission=resolved, version=version)
     if draw is not None:
-        (folder / "figures").mkdir()
-        draw(folder / "figures")
+        draw(folder)
     files = sorted([*_files(folder), FILE_NAME])
     verdicts = judge(mission.require, flight.metrics)
     summary = summarize(flight, verdicts, duration=mission.duration, version=version, files=files)
     (folder / FILE_NAME).write_text(to_json(summary), encoding="utf-8")
     return summary
+
+
+def note_files(directory: Path, names: Sequence[str]) -> None:
+    """Add files to those that the summary of a run lists as ours.
+
+    Args:
+        directory: of the run.
+        names: relative to it.
+
+    Raises:
+        OSError: the disk refused.
+    """
+    summary = read_summary(directory)
+    summary["files"] = sorted({*summary.get("files", ()), *names})
+    write_file(directory / FILE_NAME, to_json(summary).encode("ascii"))
 
 
 def _files(folder: Path) -> list[str]:

@@ -9,7 +9,6 @@ import numpy as np
 from cardume.report import style
 from cardume.simulation.flight import Flight
 
-WIDTH = 7.2  # [inch]
 PANEL, TOP, BOTTOM, LEFT, RIGHT = 1.15, 0.25, 0.45, 0.75, 0.15  # [inch]
 GAP = 0.24  # [inch] between panels
 ROOMY = 5.5  # [inch] width at which two notes fit above a panel
@@ -25,7 +24,7 @@ class Panel(NamedTuple):
     note: str
 
 
-def draw_errors(flight: Flight, width: float = WIDTH) -> Any:
+def draw_errors(flight: Flight, width: float = style.WIDTH) -> Any:
     """Draw the errors of a flight over time, one panel for each kind that matters in it.
 
     Args:

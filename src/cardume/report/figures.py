@@ -1,27 +1,55 @@
-"""The figures that every run gets, as files."""
+"""The figures of a run as files: two with every run, all of them on request."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from cardume.missions.atomic import new_file
+from cardume.missions.runs import Run
 from cardume.report import style
 from cardume.report.error_panels import draw_errors
 from cardume.report.plan import draw_plan
 from cardume.simulation.flight import Flight
 
-FIGURES: Mapping[str, Callable[[Flight], Any]] = {"plan": draw_plan, "errors": draw_errors}
+FIGURES: Mapping[str, Callable[[Run, float], Any]] = {
+    "plan": lambda run, width: draw_plan(run.flight, width),
+    "errors": lambda run, width: draw_errors(run.flight, width),
+}
+ALWAYS = {"plan": draw_plan, "errors": draw_errors}  # what every run gets
 RESOLUTION = 150  # [dots per inch] of PNG files
+FINE = 300  # [dots per inch] for papers
+NO_DATES: Mapping[str, dict[str, Any]] = {
+    ".svg": {"Date": None},
+    ".png": {"Software": None},
+    ".pdf": {"CreationDate": None, "Producer": None, "Creator": "cardume"},
+}
 
 
 def save_figures(flight: Flight, folder: Path) -> None:
-    """Draw every figure of a flight into a folder, as SVG and PNG; the same flight gives the same bytes.
+    """Draw the figures that every run gets, as SVG and PNG; the same flight gives the same bytes.
 
     Args:
         flight: what was flown.
-        folder: exists.
+        folder: is made.
+    """
+    folder.mkdir(exist_ok=True)
+    with style.styled():
+        for name, draw in ALWAYS.items():
+            figure = draw(flight)
+            for kind in (".svg", ".png"):
+                figure.savefig(folder / f"{name}{kind}", dpi=RESOLUTION, metadata=NO_DATES[kind])
+
+
+def save_figure(path: Path, name: str, run: Run, width: float | None = None) -> None:
+    """Draw one figure, complete or not at all; the same run gives the same bytes.
+
+    Args:
+        path: of the new file; its ending, .svg, .pdf or .png, says what it becomes.
+        name: one of FIGURES.
+        run: just flown or read back.
+        width: [inch] of the figure; None: two columns of a journal.
     """
     with style.styled():
-        for name, draw in FIGURES.items():
-            figure = draw(flight)
-            figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
-            figure.savefig(folder / f"{name}.png", dpi=RESOLUTION, metadata={"Software": None})
+        figure = FIGURES[name](run, style.WIDTH if width is None else width)
+        with new_file(path) as partial:
+            figure.savefig(partial, format=path.suffix[1:], dpi=FINE, metadata=NO_DATES[path.suffix])

@@ -8,7 +8,6 @@ import numpy as np
 from cardume.report import style
 from cardume.simulation.flight import Flight
 
-WIDTH = 7.2  # [inch] two columns of a journal; one is 3.5
 LEFT, RIGHT, BOTTOM = 0.58, 0.12, 0.45  # [inch] around the axes
 COMPASS = 1.2  # [inch] width of the corner with north and the current
 MARGIN = 0.38  # [inch] around what is drawn, for labels
@@ -17,7 +16,7 @@ INSTANTS = 5
 WEAKEST_CURRENT = 1e-3  # [m/s] that is worth an arrow
 
 
-def draw_plan(flight: Flight, width: float = WIDTH) -> Any:
+def draw_plan(flight: Flight, width: float = style.WIDTH) -> Any:
     """Draw the plan view of a flight, north up, equal scales.
 
     Args:

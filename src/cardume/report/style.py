@@ -9,6 +9,7 @@ import numpy as np
 # Okabe & Ito (2008), "Color Universal Design"; yellow, too light for lines, comes last.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#F0E442")
 INK, FAINT, PATH = "#333333", "#8A8A8A", "#B8B8B8"
+WIDTH = 7.2  # [inch] two columns of a journal; one is 3.5
 MOST_POINTS = 4000  # of one line: more cannot be seen, and makes an SVG slow to open
 ROW = 0.165  # [inch] height of a line of a legend
 MOST_NAMED = 8  # vehicles in a legend
@@ -31,6 +32,7 @@ RULES: dict[str, Any] = {
     "legend.frameon": False,
     "legend.handlelength": 1.8,
     "lines.solid_capstyle": "round",
+    "pdf.fonttype": 42,  # fonts that a journal accepts and a reader can search
     "svg.hashsalt": "cardume",  # the same flight gives the same file
 }
 

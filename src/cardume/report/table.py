@@ -54,7 +54,7 @@ def results_table(flight: Flight, width: int) -> str:
     """
     shown = _shown_vehicles(flight)
     labels = [*shown, *(["fleet"] if len(flight.vehicle_names) > 1 else [])]
-    columns = [(column, _cells(column, flight, shown)) for column in COLUMNS]
+    columns = [(column, cells_of(column, flight, shown)) for column in COLUMNS]
     gap = 2 if width >= ROOMY else 1
     chosen = _fitting(columns, width - NARROWEST_NAME, gap)
     widths = _widths(chosen, gap)
@@ -119,8 +119,14 @@ def share_heard(flight: Flight, receiver: int | None = None) -> float:
     return float(1.0 - lost.mean()) if lost.size else math.nan
 
 
-def _cells(column: Column, flight: Flight, shown: Sequence[str]) -> list[str]:
-    """The texts of a column: the vehicles', then the fleet's."""
+def cells_of(column: Column, flight: Flight, shown: Sequence[str]) -> list[str]:
+    """The texts of a column: the vehicles', then the fleet's.
+
+    Args:
+        column: of COLUMNS.
+        flight: what was flown.
+        shown: names of vehicles.
+    """
     if column.metric == "heard":
         places = [flight.vehicle_names.index(name) for name in shown]
         return [_percent(share_heard(flight, place)) for place in (*places, None)]

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import Protocol
 
 import numpy as np
 
-from cardume.missions.mission import Mission
+from cardume.missions.mission import Transient
 from cardume.missions.summary import Verdict, is_met
 from cardume.report.table import number, share_heard
 from cardume.simulation.flight import Flight
@@ -13,7 +14,19 @@ from cardume.simulation.flight import Flight
 NOTICEABLE = 0.05  # [m] of cross-track error below which its cause is not worth a sentence
 
 
-def meaning(flight: Flight, mission: Mission, verdicts: Sequence[Verdict]) -> str:
+class Planned(Protocol):
+    """What of a mission, or of a run read back, the sentences need."""
+
+    @property
+    def duration(self) -> float:
+        """[s] of the whole mission."""
+
+    @property
+    def transient(self) -> Transient:
+        """When a vehicle counts as settled."""
+
+
+def meaning(flight: Flight, mission: Planned, verdicts: Sequence[Verdict]) -> str:
     """A few sentences: how it ended, whether the paths were kept, why not better, and the verdict.
 
     Args:
@@ -57,7 +70,7 @@ def _got(verdict: Verdict) -> str:
     return f"{text} ({verdict.worst})" if verdict.worst and verdict.vehicle is None else text
 
 
-def _ending(flight: Flight, mission: Mission) -> str:
+def _ending(flight: Flight, mission: Planned) -> str:
     whole = f"{mission.duration:g} s"
     if flight.reason == "failed":
         return f"The mission failed at {flight.flown:g} s of {whole}: {flight.failure}."
@@ -73,7 +86,7 @@ def _duration(seconds: float) -> str:
     return f"{1000 * seconds:.2g} ms" if seconds < 0.0995 else f"{1000 * seconds:.0f} ms"
 
 
-def _keeping(flight: Flight, mission: Mission) -> Iterator[str]:
+def _keeping(flight: Flight, mission: Planned) -> Iterator[str]:
     """How well the paths were kept, and whether steering or navigation limits it."""
     lost = [name for name, found in flight.metrics.vehicles.items() if math.isnan(found.get("settling_time", math.nan))]
     if lost:
