@@ -21,3 +21,9 @@ def through_the_water(
     """gamma_hat' = u between reports.   Source: paper eqs. (53), (54), printed, on a line."""
     now = where(report.is_new > 0.5, report.state + speed * report.age, memory.state)
     return now, Predicted(now + dt * speed)
+
+
+@neighbor_law
+def nominal_speed(report: NeighborReport) -> float:
+    """gamma_hat = gamma + v_L age, whatever speed was reported.   Source: paper (54), as it is read by Rego et al."""
+    return report.state + report.nominal_speed * report.age
