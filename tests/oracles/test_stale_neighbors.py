@@ -8,7 +8,7 @@ import pytest
 from scipy.optimize import brentq
 
 from cardume.simulation.flight import Flight
-from flying import fly_text, limit
+from flying import fly_text
 
 MISSION = """
 cardume: 1
@@ -30,7 +30,8 @@ coordination: {{law: {law}, topology: {topology}}}
 neighbors: {{law: {neighbors}}}
 messaging: {{schedule: periodic, period: {tick!r} s}}
 """
-LATE = "{{channel: bernoulli, loss: 0, delay: {!r}, sound_speed: 1e9}}".format  # what is said is heard a tick later
+LATE = "{{channel: bernoulli, loss: 0, delay: {!r}, sound_speed: 1e9}}".format
+# What is said is heard a tick later at the earliest. At most 64 messages of a sender are under way: delay / tick < 64.
 VEHICLE = (
     "  - {{name: v{k}, sensors: {sensors}, start: {{along_track: {start!r}, speed: {speed!r}}}, acoustics: {air}}}"
 )
@@ -79,16 +80,7 @@ def check(flights: Sequence[Flight], quantity: Callable[[Flight], float], wanted
         assert found == pytest.approx(wanted, rel=1e-6)
 
 
-def check_limit(found: Sequence[Flight], quantity: Callable[[Flight], float], wanted: float) -> None:
-    """The closed form, for no tick: who hears at once hears one tick later."""
-    flights = dict(enumerate(found))
-    value, order = limit(lambda k: quantity(flights[int(k)]), tuple(flights))
-    print(f"{wanted:.10f}: relative error {value / wanted - 1.0:.1e}, order {order:.2f}")
-    assert value == pytest.approx(wanted, rel=1e-5)
-    assert order == pytest.approx(1.0, abs=0.1)
-
-
-TICKS = (0.1, 0.05)
+TICKS = (0.2, 0.1)
 
 
 @pytest.mark.parametrize(("delay", "printed"), [(1.0, 0.4205254067), (5.0, 0.3162418876)])
@@ -113,25 +105,33 @@ def test_all_delayed_at_random(seed):
     check(found, pace, paced(speed, gain, delay, scale))
 
 
+def check_one_sided(tick: float, delay: float, speed: float, gain: float, scale: float) -> None:
+    """Row O with the surface vehicle one tick h behind: (tau + h) / 2 in the pace, ahead by v (tau - h) / 2."""
+    numbers = {"speed": speed, "gain": gain, "scale": scale, "topology": "star"}
+    flight = fly((0.0, 0.3, -0.2), [0.0, delay, delay], tick, 600.0, **numbers)
+    slowed = paced(speed, gain, (delay + tick) / 2.0, scale)
+    check([flight], pace, slowed)
+    check([flight], lag, slowed * (delay - tick) / 2.0)
+
+
 def test_surface_vehicle_that_sees_at_the_printed_numbers():
     """Row O: the SV knows the UVs without delay, they it after 5 s: v = v_L - k tanh(v tau / 2), SV v tau / 2 ahead."""
     speed = paced(0.5, 0.2, 2.5)
     assert (speed, 2.5 * speed) == pytest.approx((0.3573810317, 0.8934525794), abs=5e-11)
-    found = [fly((0.0, 0.5, -0.5), [0.0, 5.0, 5.0], tick, 400.0, topology="star") for tick in (0.1, 0.05, 0.025)]
-    check_limit(found, pace, speed)
-    check_limit(found, lag, 2.5 * speed)
+    for tick in TICKS:
+        check_one_sided(tick, 5.0, 0.5, 0.2, 1.0)
 
 
 def test_surface_vehicle_that_sees_by_usbl():
     """Row O, the same where it is the USBL that sees: it overtakes the late reports of those below."""
     sees = (
-        "{gnss: {sigma: 0, period: 0.05}, ahrs: {heading_sigma: 0, yaw_rate_sigma: 0, attitude_sigma: 0, period: 0.05},"
-        " thruster_speed: {sigma: 0, period: 0.05, reader: proportional},"
-        " usbl: {range_sigma: 0, angle_sigma: 0, period: 0.05, latency: 0}}"
+        "{gnss: {sigma: 0, period: 0.1}, ahrs: {heading_sigma: 0, yaw_rate_sigma: 0, attitude_sigma: 0, period: 0.1},"
+        " thruster_speed: {sigma: 0, period: 0.1, reader: proportional},"
+        " usbl: {range_sigma: 0, angle_sigma: 0, period: 0.1, latency: 0}}"
     )
-    flight = fly((0.0, 0.5, -0.5), [5.0] * 3, 0.05, 400.0, [sees, "ideal", "ideal"], topology="star")
-    assert pace(flight) == pytest.approx(0.3573810317, rel=0.01)
-    assert lag(flight) == pytest.approx(0.8934525794, rel=0.02)
+    flight = fly((0.0, 0.5, -0.5), [5.0] * 3, 0.1, 400.0, [sees, "ideal", "ideal"], topology="star")
+    assert pace(flight) == pytest.approx(0.3573810317, rel=0.02)
+    assert lag(flight) == pytest.approx(0.8934525794, rel=0.03)
 
 
 @pytest.mark.parametrize("seed", range(2))
@@ -139,12 +139,7 @@ def test_surface_vehicle_that_sees_at_random(seed):
     """Row O, the asymmetric case, at random v_L, k, gamma_0 and tau."""
     draw = np.random.default_rng([52, seed])
     speed, gain, scale = draw.uniform(0.4, 1.0), draw.uniform(0.1, 0.3), draw.uniform(0.5, 2.0)
-    delay = 0.2 * int(draw.integers(5, 20))
-    numbers = {"speed": speed, "gain": gain, "scale": scale, "topology": "star"}
-    found = [fly((0.0, 0.3, -0.2), [0.0, delay, delay], t, 400.0, **numbers) for t in (0.1, 0.05, 0.025)]
-    slowed = paced(speed, gain, delay / 2.0, scale)
-    check_limit(found, pace, slowed)
-    check_limit(found, lag, slowed * delay / 2.0)
+    check_one_sided(0.1, 0.2 * int(draw.integers(5, 15)), speed, gain, scale)
 
 
 @pytest.mark.parametrize(("delay", "printed"), [(1.0, 0.0166), (5.0, 0.0495)])
@@ -182,13 +177,13 @@ def test_the_remedy_bears_a_delay_of_one_time_constant(share, settles):
 def test_the_linear_law_agrees_whatever_the_delay(delay, topology):
     """Row O: I - D^-1 A is stable whatever the delay, here up to k tau = 4; the pace is v_L / (1 + k tau)."""
     law = "'printed_coordination:linear', gain: 0.1"
-    flight = fly((0.0, 3.0, -2.0, 1.0), [delay] * 4, 0.2, 300.0 * delay, law=law, topology=topology)
+    flight = fly((0.0, 3.0, -2.0, 1.0), [delay] * 4, delay / 50.0, 300.0 * delay, law=law, topology=topology)
     assert np.ptp(flight.channels["coordination_state"][-1]) < 1e-6
     assert pace(flight) == pytest.approx(0.5 / (1.0 + 0.1 * delay), rel=1e-6)
 
 
 def test_tanh_takes_no_notice_where_the_delay_is_long():
     """Row O, what it does not say: far beyond v tau = gamma_0 all brake as hard as they can, and nobody agrees."""
-    flight = fly((0.0, 3.0, -2.0, 1.0), [40.0] * 4, 0.2, 4000.0, topology="ring")
+    flight = fly((0.0, 3.0, -2.0, 1.0), [40.0] * 4, 0.8, 4000.0, topology="ring")
     assert pace(flight) == pytest.approx(0.5 - 0.2, rel=1e-6)
     assert np.ptp(flight.channels["coordination_state"][-1]) == pytest.approx(5.0, abs=0.01)

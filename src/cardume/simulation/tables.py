@@ -32,7 +32,7 @@ from cardume.simulation.recording import LOG, MESSAGE_LOG, NUM_COUNTS
 from cardume.simulation.score import BINS, FLEET_SCORES, HISTOGRAMS, RULES, SCORES, FleetScore
 from cardume.simulation.tick import TROUBLE_WIDTH
 
-MOST_SLOTS = 4096  # messages of one sender under way at once
+MOST_SLOTS = 64  # messages of one sender under way at once
 USBL_COLUMNS = 4
 # Families that keep one memory for each vehicle of the fleet.
 PER_OTHER = frozenset({"reference_point", "coordination", "neighbors", "usbl", "acoustics"})
