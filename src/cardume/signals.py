@@ -182,6 +182,7 @@ class PathError(NamedTuple):
     arc_length: float = 0.0  # [m] on the own path
     finished: float = 0.0  # [-] 1 past the end of the path
     speed: float = 0.5  # [m/s] of the vehicle through the water
+    path_speed: float = NOTHING  # [m/s] rate of path_parameter; a reference point's NaN: that of the point abeam
     path: Rows = np.zeros(20)  # (n,) path table
 
 

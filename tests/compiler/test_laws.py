@@ -270,7 +270,7 @@ def remembering(error: PathError, memory: Ring, gain: Number = 10.0) -> tuple[fl
 def ask_once(handles: np.ndarray, gains: np.ndarray, memory: np.ndarray, slot: int, cross_track: float) -> Any:
     book = LawBook(rows_of(handles), rows_of(gains), rows_of(memory), 0.1)
     path = rows_of(gains)
-    error = PathError(0.0, 0.0, cross_track, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.5, path)
+    error = PathError(0.0, 0.0, cross_track, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.5, 0.5, path)
     motion = Motion(0.3, 0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0)
     return guide(book, slot, error, motion, Pace(0.5))
 

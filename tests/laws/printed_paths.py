@@ -95,5 +95,6 @@ def _told(error: PathError, cross_track: float, path_parameter: float) -> PathEr
         error.arc_length,
         error.finished,
         error.speed,
+        error.path_speed,
         error.path,
     )

@@ -7,11 +7,12 @@ import pytest
 from numba import config, njit
 
 from cardume.compiler import WIDTH, load, rows_of, store
+from cardume.paths.along import arc_length_at, path_parameter_at
 from cardume.paths.lawnmower import lawnmower
 from cardume.paths.offset import offset_path
 from cardume.paths.projection import point_at, project, projection
 from cardume.paths.segment import Start
-from cardume.paths.table import LENGTH_OWN, PathPlace, arc_length_at, path_parameter_at
+from cardume.paths.table import LENGTH_OWN, PathPlace
 from cardume.signals import Place
 
 NUM_OUT = 10

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cardume.paths import table
+from cardume.paths.along import arc_length_at
 from cardume.paths.arc import arc
 from cardume.paths.lawnmower import lawnmower
 from cardume.paths.offset import offset_path
@@ -71,7 +72,7 @@ def test_a_segment_keeps_its_own_speed() -> None:
 def test_every_point_of_the_own_path_is_offset_from_the_reference_path(scene) -> None:
     reference, offset, gamma, _ = scene
     path = offset_path(reference, offset)
-    here, there = beside(reference, gamma, offset), point_at(path, table.arc_length_at(path, gamma))
+    here, there = beside(reference, gamma, offset), point_at(path, arc_length_at(path, gamma))
     assert there[:2] == pytest.approx(here[:2], abs=1e-9)
     assert math.cos(there.course - here.course) == pytest.approx(1.0, abs=1e-12)
 

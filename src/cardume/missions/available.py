@@ -11,7 +11,7 @@ from cardume.laws import Law, all_families, laws_of
 from cardume.missions.catalog import Catalog
 from cardume.onboard import compensation, control, coordination, guidance, messaging
 from cardume.onboard.estimation import current, neighbors, position, speed
-from cardume.paths import projection
+from cardume.paths import projection, virtual_target
 from cardume.simulation.flight import METRICS
 from cardume.vehicles import kinematic, medusa
 from cardume.world import acoustics, currents, sensors
@@ -33,6 +33,7 @@ ROOMS = (
     projection,
     sensors,
     speed,
+    virtual_target,
 )
 
 

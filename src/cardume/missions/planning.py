@@ -15,12 +15,13 @@ from cardume.missions.currents import Window, explain_coverage, read_current
 from cardume.missions.formats import read_plan
 from cardume.missions.geodesy import GeoPoint
 from cardume.missions.mission import Mission
-from cardume.missions.route import ArcPath, CirclePath, FilePath, LawnmowerPath, LinePath
+from cardume.missions.route import ArcPath, CirclePath, FilePath, LawnmowerPath, LemniscatePath, LinePath
 from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
 from cardume.onboard.mind import Setup
 from cardume.paths.arc import arc
 from cardume.paths.circle import Center, circle
 from cardume.paths.lawnmower import lawnmower
+from cardume.paths.lemniscate import lemniscate
 from cardume.paths.line import line
 from cardume.paths.offset import offset_path
 from cardume.paths.outline import outline
@@ -104,6 +105,16 @@ def _drawn_path(path: Any) -> ReferencePath:
     if isinstance(path, CirclePath):
         return circle(
             Center(path.centre.north, path.centre.east), path.radius, cast(Turn, path.turn), path.start_bearing
+        )
+    if isinstance(path, LemniscatePath):
+        return lemniscate(
+            Center(path.centre.north, path.centre.east),
+            path.half_width,
+            path.axis,
+            cast(Turn, path.turn),
+            start_parameter=path.start_parameter,
+            parameter_rate=path.parameter_rate,
+            laps=path.laps,
         )
     start = Start(path.start.north, path.start.east, path.start.course)
     if isinstance(path, LinePath):
@@ -257,7 +268,7 @@ def _start(vehicle: Vehicle, path: np.ndarray, model: Choice) -> tuple[VesselSta
         east = point.east + start.cross_track * point.cos_course
         heading = point.course + start.heading_error
     else:
-        north, east, heading, place = start.north, start.east, start.heading, PathPlace()
+        north, east, heading, place = start.north, start.east, start.heading, start_at(path, 0.0)
     state = VesselState(north, east, vehicle.depth, heading, start.speed)
     return state._replace(shaft_speed=_trimmed(model, start.speed)), place
 

@@ -12,6 +12,7 @@ PositiveMeters = Annotated[float, Quantity("m", POSITIVE)]
 Angle = Annotated[float, Quantity("rad")]
 PositiveAngle = Annotated[float, Quantity("rad", POSITIVE)]
 SpeedOrNone = Annotated[float | None, Quantity("m/s", POSITIVE)]
+MOST_LAPS = 10_000
 Turn = Annotated[str, Word(("starboard", "port"))]
 
 
@@ -102,6 +103,21 @@ class SegmentsPath:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LemniscatePath:
+    """A figure of eight, the lemniscate of Bernoulli."""
+
+    centre: Annotated[Point, Group(Point), "where it crosses itself"]
+    half_width: Annotated[PositiveMeters, "from the crossing to a tip"]
+    axis: Annotated[Angle, "course from the crossing to the first tip"] = 0.0
+    turn: Annotated[Turn, "round the first tip; starboard: clockwise seen from above"] = "starboard"
+    start_parameter: Annotated[Angle, "t where it begins, 0 at the first tip"] = 0.0
+    parameter_rate: Annotated[
+        float | None, Quantity("1/s", POSITIVE), "dt/dt; makes the speed along it, instead of the formation's"
+    ] = None
+    laps: Annotated[int, Whole(1, MOST_LAPS), "how many times round"] = 1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FilePath:
     """A path read from another file."""
 
@@ -114,6 +130,7 @@ PATHS = {
     "circle": CirclePath,
     "lawnmower": LawnmowerPath,
     "segments": SegmentsPath,
+    "lemniscate": LemniscatePath,
     "file": FilePath,
 }
-AnyPath = LinePath | ArcPath | CirclePath | LawnmowerPath | SegmentsPath | FilePath
+AnyPath = LinePath | ArcPath | CirclePath | LawnmowerPath | SegmentsPath | LemniscatePath | FilePath

@@ -8,7 +8,7 @@ from typing import Any
 from cardume.errors import MissionError, Problem
 from cardume.missions.distributions import Varying, values_of
 from cardume.missions.mission import Mission
-from cardume.missions.route import FilePath, SegmentsPath
+from cardume.missions.route import FilePath, LemniscatePath, SegmentsPath
 from cardume.missions.vehicle import LawChoice
 from cardume.units import show_quantity
 
@@ -62,6 +62,8 @@ def _path_rules(mission: Mission) -> Iterator[tuple[str, str]]:
     if isinstance(path, Varying) or isinstance(formation, Varying) or formation.speed is not None:
         return
     pieces = path.segments if isinstance(path, SegmentsPath) else ()
+    if isinstance(path, LemniscatePath) and path.parameter_rate is not None:
+        return
     if isinstance(path, FilePath) or (pieces and all(getattr(piece, "speed", 0.0) is not None for piece in pieces)):
         return
     yield "formation.speed", "missing; v_L, along the reference path; must be a speed, as '0.5 m/s'"

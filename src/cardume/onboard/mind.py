@@ -61,6 +61,8 @@ class Acquaintance(NamedTuple):
     north: float = NOTHING  # [m] where it was seen
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when
+    segment: float = 0.0  # [-] of its own path, where it was seen
+    arc_length: float = 0.0  # [m]
 
 
 class Mind(NamedTuple):

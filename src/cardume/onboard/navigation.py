@@ -109,11 +109,13 @@ def observe_current(mind: Mind, position: NavigationEstimate, motion: Motion) ->
 
 @compiled
 def locate(mind: Mind, position: NavigationEstimate, motion: Motion, current: Water) -> PathError:
-    """The path as the vehicle sees it, and how fast it comes along: (5)-(8) and (53) corrected.
+    """The path as the vehicle sees it, and how fast it comes along: (5)-(8), (25)-(27) and (53) corrected.
 
-    gamma' = (V . t) / ((1 - c e) h), V the velocity over ground, t the path's tangent, h the stretch.
+    gamma' = (V . t) / ((1 - c e) h), V the velocity over ground, t the path's tangent, h the stretch,
+    where the reference point is the one abeam; a virtual target says itself how fast it goes.
     """
-    found = find_reference_point(mind.book, mind.me, Place(position.north, position.east, path_of(mind, mind.me)))
+    moving = _in_current(motion, current)
+    found = find_reference_point(mind.book, 0, Place(position.north, position.east, path_of(mind, mind.me)), moving)
     finished = where(found.finished > 0.5, 1.0, get_along(mind.own, 0).finished)
     error = PathError(
         found.path_course,
@@ -126,16 +128,31 @@ def locate(mind: Mind, position: NavigationEstimate, motion: Motion, current: Wa
         found.arc_length,
         finished,
         motion.surge,
+        where(found.path_speed == found.path_speed, found.path_speed, rate_along(found, moving)),
         found.path,
     )
-    path_speed = rate_along(error, motion, current)
-    put_along(mind.own, 0, Along(error.cross_track, error.path_parameter, path_speed, finished))
+    put_along(mind.own, 0, Along(error.cross_track, error.path_parameter, error.path_speed, finished))
     return error
 
 
 @compiled
-def rate_along(error: PathError, motion: Motion, current: Water) -> float:
-    """Rate of the coordination state [m/s]."""
-    along, _ = to_path(error.path_course, motion.north + current.north, motion.east + current.east)
+def _in_current(motion: Motion, current: Water) -> Motion:
+    """The motion with the current as it is known now."""
+    return Motion(
+        motion.heading,
+        motion.yaw_rate,
+        motion.surge,
+        motion.sway,
+        motion.north,
+        motion.east,
+        current.north,
+        current.east,
+    )
+
+
+@compiled
+def rate_along(error: PathError, motion: Motion) -> float:
+    """Rate of the coordination state [m/s] of the point abeam."""
+    along, _ = to_path(error.path_course, motion.north + motion.current_north, motion.east + motion.current_east)
     room = clip(1.0 - error.curvature * error.cross_track, NEAREST_CENTER, 1e9)
     return along / (room * error.stretch)

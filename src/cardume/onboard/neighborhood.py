@@ -24,7 +24,8 @@ from cardume.onboard.mind import (
     put_speech,
     sighting_in,
 )
-from cardume.paths.base import find_reference_point
+from cardume.paths.projection import project
+from cardume.paths.table import PathPlace
 from cardume.signals import (
     NOTHING,
     Disagreement,
@@ -94,6 +95,8 @@ def _updated(known: Acquaintance, state: float, path_speed: float, valid: float,
         known.north,
         known.east,
         known.time_of_fix,
+        known.segment,
+        known.arc_length,
     )
 
 
@@ -123,7 +126,7 @@ def look_around(
 
 @compiled
 def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, valid: float, error: PathError) -> None:
-    """Note where a vehicle was seen, and how far along its path that is.
+    """Note where a vehicle was seen, and how far along its path the point abeam of it is.
 
     Args:
         mind: of the one who saw.
@@ -135,13 +138,22 @@ def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, val
         error: where the one who saw is on its own path.
     """
     known = get_acquaintance(mind.others, vehicle)
-    found = find_reference_point(
-        mind.book,
-        vehicle,
-        Place(where(is_new, north, 0.0), where(is_new, east, 0.0), path_of(mind, vehicle)),
-    )
+    seen_at = Place(where(is_new, north, 0.0), where(is_new, east, 0.0), path_of(mind, vehicle))
+    found, place = project(seen_at, PathPlace(known.segment, known.arc_length))
     speed = where(known.state == known.state, known.path_speed, error.speed_profile)
-    seen = Acquaintance(found.path_parameter, speed, valid, 1.0, known.predicted, known.correction, north, east, valid)
+    seen = Acquaintance(
+        found.path_parameter,
+        speed,
+        valid,
+        1.0,
+        known.predicted,
+        known.correction,
+        north,
+        east,
+        valid,
+        place.segment,
+        place.arc_length,
+    )
     put_acquaintance(mind.others, vehicle, where(is_new, seen, known))
 
 
@@ -181,6 +193,8 @@ def expect_correction(mind: Mind, vehicle: int, own_before: float) -> None:
         known.north,
         known.east,
         known.time_of_fix,
+        known.segment,
+        known.arc_length,
     )
     put_acquaintance(mind.others, vehicle, after)
 
@@ -202,6 +216,8 @@ def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) ->
         known.north,
         known.east,
         known.time_of_fix,
+        known.segment,
+        known.arc_length,
     )
     put_acquaintance(mind.others, vehicle, after)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cardume.paths.segment import GeometryError, PathPoint, Segment, end_of, point_on
+from cardume.paths.segment import GeometryError, PathPoint, Segment, bends_of, end_of, point_on
 
 KINK = 1e-9  # [rad] a turn at a joint below this is rounding, not a corner
 GAP = 1e-6  # [m]
@@ -30,25 +30,29 @@ class OwnSegment:
 
 
 def offset_segment(segment: Segment, starboard: float) -> OwnSegment:
-    """The segment moved to starboard: an arc of radius R gets R - sigma * offset.
+    """The segment moved to starboard: an arc of radius R gets R - sigma * offset, a curve all its parallel points.
 
     Args:
         segment: of the reference path.
         starboard: [m] offset.
 
     Raises:
-        GeometryError: the arc vanishes.
+        GeometryError: the arc, or the tightest bend of the curve, vanishes.
     """
+    for bend in bends_of(segment):
+        if not 1.0 - bend * starboard > 0.0:
+            radius = 1.0 / abs(bend)
+            raise GeometryError(f"the {segment} would get the radius {(1.0 - bend * starboard) * radius:.6g} m")
     stretch = 1.0 - segment.curvature * starboard
-    if not stretch > 0.0:
-        radius = 1.0 / abs(segment.curvature)
-        raise GeometryError(f"the {segment} would get the radius {stretch * radius:.6g} m")
+    if segment.curve:
+        stretch = 1.0 - starboard * segment.curve.whole_turn / segment.length
     shape = replace(
         segment,
         north=segment.north - starboard * math.sin(segment.course),
         east=segment.east + starboard * math.cos(segment.course),
         curvature=segment.curvature / stretch,
         length=segment.length * stretch,
+        offset=starboard,
     )
     return OwnSegment(shape=shape, reference_length=segment.length)
 
@@ -84,6 +88,11 @@ def join_corner(before: OwnSegment, after: OwnSegment, angle: float, starboard: 
     """
     if angle == 0.0 or starboard == 0.0:
         return [before, after]
+    if before.shape.curve or after.shape.curve:
+        raise GeometryError(
+            f"the {before.shape} and the {after.shape} meet at a corner of {math.degrees(angle):.4g} deg;"
+            " beside a curve only smooth joints can be offset: fly it without an offset, or round the corner"
+        )
     if math.pi - abs(angle) < HAIRPIN:
         angle = -math.copysign(angle, starboard)
     if angle * starboard < 0.0:

@@ -7,6 +7,7 @@ import numpy as np
 
 from cardume.paths import table
 from cardume.paths.corner import OwnSegment, corner_angle, join_corner, offset_segment
+from cardume.paths.curve import Curve
 from cardume.paths.segment import GeometryError, Segment
 
 
@@ -15,7 +16,8 @@ def offset_path(
 ) -> np.ndarray:
     """Offset the reference path to starboard by a constant, and write the vehicle's path table.
 
-    An arc of radius R and sense sigma gets the radius R - sigma * starboard.  At a sharp corner the own
+    An arc of radius R and sense sigma gets the radius R - sigma * starboard; a point of a curve, where the
+    curvature is c, the curvature c / (1 - c * starboard).  At a sharp corner the own
     path is rounded by an arc about the corner (outer side) or cut back to where its parts cross (inner).
 
     Args:
@@ -105,13 +107,22 @@ def write_table(own: Sequence[OwnSegment], ahead: float, speed: float) -> np.nda
     if len(own) > table.MAX_SEGMENTS:
         raise GeometryError(f"the path has {len(own)} segments; at most {table.MAX_SEGMENTS} fit: split the mission")
     rows = np.zeros((len(own), table.SEGMENT_WIDTH))
-    arc_start = reference_start = 0.0
-    for row, segment in zip(rows, own, strict=True):
+    lead = next((k for k, segment in enumerate(own) if not segment.shape.beyond), 0)
+    count = sum(not segment.shape.beyond for segment in own)
+    arc_start = -math.fsum(segment.shape.length for segment in own[:lead])
+    reference_start = -math.fsum(segment.reference_length for segment in own[:lead])
+    for k, (row, segment) in enumerate(zip(rows, own, strict=True)):
+        if k == lead:
+            arc_start = reference_start = 0.0
         _write_row(row, segment, speed)
         row[table.ARC_START], row[table.REFERENCE_START] = arc_start, reference_start
         arc_start += row[table.LENGTH]
         reference_start += row[table.REFERENCE_LENGTH]
-    return np.concatenate([[len(own), arc_start, reference_start, ahead], rows.ravel()])
+    last = rows[lead + count - 1]
+    own_length = last[table.ARC_START] + last[table.LENGTH]
+    reference_length = last[table.REFERENCE_START] + last[table.REFERENCE_LENGTH]
+    curves = sum(segment.shape.curve is not None for segment in own)
+    return np.concatenate([[len(own), own_length, reference_length, ahead, curves], rows.ravel()])
 
 
 def _write_row(row: np.ndarray, segment: OwnSegment, speed: float) -> None:
@@ -129,3 +140,15 @@ def _write_row(row: np.ndarray, segment: OwnSegment, speed: float) -> None:
     row[table.SPEED] = speed if shape.speed is None else shape.speed
     row[table.STRETCH] = shape.length / reference_length if reference_length else 1.0
     row[table.REFERENCE_RATE] = reference_length / shape.length
+    if shape.curve:
+        _write_curve(row, shape, shape.curve)
+
+
+def _write_curve(row: np.ndarray, shape: Segment, curve: Curve) -> None:
+    row[table.IS_CURVE], row[table.OFFSET] = 1.0, shape.offset
+    row[table.TURNED : table.TURNED + table.DEGREE] = curve.turned
+    row[table.GONE_AHEAD : table.GONE_AHEAD + table.PLACE_DEGREE] = curve.ahead
+    row[table.GONE_STARBOARD : table.GONE_STARBOARD + table.PLACE_DEGREE] = curve.starboard
+    if shape.speed is None and curve.speed is not None:
+        row[table.SPEED] = curve.speed
+        row[table.GAINED_SPEED : table.GAINED_SPEED + table.DEGREE] = curve.gained_speed

@@ -19,7 +19,7 @@ def outline(path: np.ndarray, spacing: float = 1.0) -> np.ndarray:
         [m] (points, 3): arc length, north, east; both ends of every segment are among them.
     """
     parts = []
-    for row in path[table.HEADER_WIDTH :].reshape(-1, table.SEGMENT_WIDTH):
+    for row in table.rows_on_path(path):
         length = row[table.LENGTH]
         if row[table.RADIUS] > 0.0:
             length = min(length, 2.0 * math.pi * row[table.RADIUS])

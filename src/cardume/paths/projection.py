@@ -8,7 +8,8 @@ curvature c,
 
 e is sigma (R - rho), eq. (52) with its missing -R and the sense of turn, written so that nothing
 cancels when the arc is nearly straight.  s is an angle, known up to whole laps: the lap is the one
-nearest to where the vehicle was, so gamma never wraps.
+nearest to where the vehicle was, so gamma never wraps.  On a curve the foot is searched for, from
+where the vehicle was (`on_curve.py`).
 """
 
 from typing import NamedTuple
@@ -16,13 +17,17 @@ from typing import NamedTuple
 from cardume.compiler import Rows, compiled, load, some, where
 from cardume.maths import atan2, clip, hypot, sincos, unwrap_near, wrap_angle
 from cardume.paths.base import reference_point_law
+from cardume.paths.on_curve import curve_point, foot_on_curve, gained_speed, is_curve, reference_along
 from cardume.paths.table import (
     AHEAD,
     ARC_START,
     COS_COURSE,
     CURVATURE,
     LENGTH,
+    LENGTH_OWN,
     NUM_SEGMENTS,
+    OFFSET,
+    REFERENCE_LENGTH,
     REFERENCE_RATE,
     REFERENCE_START,
     SIN_COURSE,
@@ -32,13 +37,15 @@ from cardume.paths.table import (
     START_NORTH,
     STRETCH,
     PathPlace,
+    has_curves,
     segment_at,
     segment_near,
     segment_value,
 )
-from cardume.signals import PathError, Place
+from cardume.signals import NOTHING, PathError, Place
 
 MOVES = 4  # segments that a vehicle may pass in one tick; a jump over more takes several ticks
+MOVES_ON_CURVES = 400  # the same where a bend is many short curves
 AT_CENTER = 1e-9  # radii from an arc's center within which every point of the arc is equally near
 
 
@@ -50,6 +57,9 @@ class Foot(NamedTuple):
     length: float  # [m] of the segment
     cross_track: float  # [m] > 0 to starboard
     course: float  # [rad]
+    curvature: float  # [1/m]
+    stretch: float  # [-]
+    gained: float  # [m] along on the reference path
 
 
 class PointAhead(NamedTuple):
@@ -90,7 +100,23 @@ def foot_on(place: Place, segment: float, last: float, arc_length: float) -> Foo
         turned = where(to_center > AT_CENTER, atan2(turning * x, 1.0 - c * y), turning * was)
         along = where(curved, unwrap_near(turned, turning * was) / turning, x)
         course = course + where(curved, where(c > 0.0, turned, -turned), 0.0)
-    return Foot(segment, along, length, cross_track, course)
+    stretch = segment_value(path, segment, STRETCH)
+    foot = Foot(
+        segment, along, length, cross_track, course, c, stretch, along * segment_value(path, segment, REFERENCE_RATE)
+    )
+    if has_curves(path):
+        foot = where(is_curve(path, segment), _foot_on_curve(place, segment, arc_length, x, y), foot)
+    return foot
+
+
+@compiled
+def _foot_on_curve(place: Place, segment: float, arc_length: float, x: float, y: float) -> Foot:
+    path = place.path
+    length = segment_value(path, segment, LENGTH)
+    was = (arc_length - segment_value(path, segment, ARC_START)) * segment_value(path, segment, REFERENCE_RATE)
+    foot = foot_on_curve(path, segment, x, y, was)
+    course = segment_value(path, segment, START_COURSE) + foot.turned
+    return Foot(segment, foot.own_along, length, foot.cross_track, course, foot.curvature, foot.stretch, foot.along)
 
 
 @compiled
@@ -107,7 +133,7 @@ def find_foot(place: Place, memory: PathPlace) -> Foot:
     last = load(place.path, NUM_SEGMENTS) - 1.0
     foot = foot_on(place, clip(memory.segment, 0.0, where(last > 0.0, last, 0.0)), last, memory.arc_length)
     may_return = foot.segment >= 0.0
-    for _ in range(MOVES):
+    for _ in range(MOVES_ON_CURVES if has_curves(place.path) else MOVES):
         onward = (foot.along > foot.length) & (foot.segment < last)
         back = (foot.along < 0.0) & (foot.segment > 0.0) & may_return
         may_return = may_return & (foot.along <= foot.length)
@@ -115,6 +141,8 @@ def find_foot(place: Place, memory: PathPlace) -> Foot:
         if some(moved):
             segment = foot.segment + where(onward, 1.0, where(back, -1.0, 0.0))
             foot = where(moved, foot_on(place, segment, last, memory.arc_length), foot)
+        else:
+            break
     return foot
 
 
@@ -130,7 +158,10 @@ def formation_speed(path: Rows, segment: float, path_parameter: float) -> float:
     ahead = load(path, AHEAD)
     if some(ahead != 0.0):
         segment = where(ahead != 0.0, segment_at(path, path_parameter, REFERENCE_START), segment)
-    return segment_value(path, segment, SPEED)
+    speed = segment_value(path, segment, SPEED)
+    if has_curves(path):
+        speed = speed + gained_speed(path, segment, path_parameter - segment_value(path, segment, REFERENCE_START))
+    return speed
 
 
 @compiled
@@ -138,9 +169,11 @@ def project(place: Place, memory: PathPlace) -> tuple[PathError, PathPlace]:
     """Compare a vehicle with its path at the point it is abeam of.
 
     Exact on lines and arcs of both senses at any distance; before the start and past the end the first
-    and last segments go on, arcs as their circle.  At an arc's center the angle stays as it was.  Within
-    the corner of a sharp turn gamma waits at the corner.  gamma jumps only where the nearest point
-    does: beyond an arc's center, and on the inner side of a corner.
+    and last segments go on, arcs as their circle, closed curves as one more lap, others straight.  At an
+    arc's center the angle stays as it was.  Within the corner of a sharp turn gamma waits at the corner.
+    gamma jumps only where the nearest point does: beyond an arc's center, and on the inner side of a
+    corner.  On a curve the foot is the nearest point around the last one: where the path crosses itself,
+    the vehicle stays on its branch.
 
     Args:
         place: position and path.
@@ -153,22 +186,27 @@ def project(place: Place, memory: PathPlace) -> tuple[PathError, PathPlace]:
     last = load(path, NUM_SEGMENTS) - 1.0
     segment = foot.segment
     # Only a corner leaves the foot beyond an inner end.
-    along = where((segment > 0.0) & (foot.along < 0.0), 0.0, foot.along)
-    along = where((segment < last) & (along > foot.length), foot.length, along)
+    short = (segment > 0.0) & (foot.along < 0.0)
+    long = (segment < last) & (foot.along > foot.length)
+    along = where(short, 0.0, where(long, foot.length, foot.along))
+    gained = where(short | long, along * segment_value(path, segment, REFERENCE_RATE), foot.gained)
     arc_length = segment_value(path, segment, ARC_START) + along
-    gamma = segment_value(path, segment, REFERENCE_START) + along * segment_value(path, segment, REFERENCE_RATE)
-    path_parameter = gamma - load(path, AHEAD)
+    path_parameter = segment_value(path, segment, REFERENCE_START) + gained - load(path, AHEAD)
+    finished = (segment >= last) & (along >= foot.length)
+    if has_curves(path):  # a closed one goes on
+        finished = finished | (arc_length >= load(path, LENGTH_OWN))
     error = PathError(
         wrap_angle(foot.course),
-        segment_value(path, segment, CURVATURE),
+        foot.curvature,
         foot.cross_track,
         0.0 * along,
         path_parameter,
-        segment_value(path, segment, STRETCH),
+        foot.stretch,
         formation_speed(path, segment, path_parameter),
         arc_length,
-        where((segment >= last) & (along >= foot.length), 1.0, 0.0),
+        where(finished, 1.0, 0.0),
         0.0 * along,
+        NOTHING + 0.0 * along,
         path,
     )
     # A position that is not a number must not be remembered.
@@ -204,8 +242,10 @@ def point_of_formation(path: Rows, path_parameter: float, guess: float) -> Point
     gamma = path_parameter + load(path, AHEAD)
     segment = segment_near(path, gamma, REFERENCE_START, guess)
     beyond = gamma - segment_value(path, segment, REFERENCE_START)
-    arc_length = segment_value(path, segment, ARC_START) + beyond * segment_value(path, segment, STRETCH)
-    return point_on(path, segment, arc_length)
+    point = _point_along(path, segment, beyond * segment_value(path, segment, STRETCH))
+    if has_curves(path):
+        point = where(is_curve(path, segment), _point_along_curve(path, segment, beyond), point)
+    return point
 
 
 @compiled
@@ -220,7 +260,17 @@ def point_on(path: Rows, segment: float, arc_length: float) -> PointAhead:
     Returns:
         Position [m], course [rad] in (-pi, pi], and its sine and cosine.
     """
-    s = arc_length - segment_value(path, segment, ARC_START)
+    along = arc_length - segment_value(path, segment, ARC_START)
+    point = _point_along(path, segment, along)
+    if has_curves(path):
+        on_curve = _point_along_curve(path, segment, reference_along(path, segment, along))
+        point = where(is_curve(path, segment), on_curve, point)
+    return point
+
+
+@compiled
+def _point_along(path: Rows, segment: float, s: float) -> PointAhead:
+    """The point s [m] from the start of a line or an arc."""
     c = segment_value(path, segment, CURVATURE)
     sin_start, cos_start = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
     # 1 - cos loses digits where an arc is nearly straight: half angles
@@ -237,6 +287,23 @@ def point_on(path: Rows, segment: float, arc_length: float) -> PointAhead:
         wrap_angle(segment_value(path, segment, START_COURSE) + turned),
         sin_start * cos_turned + cos_start * sin_turned,
         cos_start * cos_turned - sin_start * sin_turned,
+    )
+
+
+@compiled
+def _point_along_curve(path: Rows, segment: float, along: float) -> PointAhead:
+    """The own point abeam of the one that lies `along` [m] from the start of a reference curve."""
+    inside = clip(along, 0.0, segment_value(path, segment, REFERENCE_LENGTH))
+    point, beyond, offset = curve_point(path, segment, inside), along - inside, segment_value(path, segment, OFFSET)
+    sin_start, cos_start = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
+    x = point.ahead + beyond * point.cosine - offset * point.sine
+    y = point.starboard + beyond * point.sine + offset * (point.cosine - 1.0)
+    return PointAhead(
+        segment_value(path, segment, START_NORTH) + x * cos_start - y * sin_start,
+        segment_value(path, segment, START_EAST) + x * sin_start + y * cos_start,
+        wrap_angle(segment_value(path, segment, START_COURSE) + point.turned),
+        sin_start * point.cosine + cos_start * point.sine,
+        cos_start * point.cosine - sin_start * point.sine,
     )
 
 

@@ -1,4 +1,4 @@
-"""Reference paths: chains of lines and arcs, in plain Python, made once per mission.
+"""Reference paths: chains of lines, arcs and curves, in plain Python, made once per mission.
 
 One file per kind of path builds the chain from what a mission says; `offset_path` turns it into the
 table of each vehicle.
@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 
 from cardume.errors import InputError
 from cardume.laws import Meters, Radians
+from cardume.paths.curve import Curve
 
 Turn = Literal["starboard", "port"]
 
@@ -41,15 +42,18 @@ class PathPoint(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Segment:
-    """A line or an arc of the reference path.
+    """A line, an arc or a curve of the reference path.
 
     Attributes:
         north, east: [m] start.
         course: [rad] at the start.
-        curvature: [1/m] > 0 turns to starboard; 0 for a line.
+        curvature: [1/m] > 0 turns to starboard; 0 for a line, and for a curve, which has its own.
         length: [m] > 0.
-        speed: [m/s] v_L here; None: the formation's.
+        speed: [m/s] v_L here; None: the formation's, or the curve's own.
         label: where it was given, for messages, such as "line 7".
+        curve: how it bends, where that is neither a line nor an arc.
+        offset: [m] of this segment to starboard of its curve; 0 on a reference path.
+        beyond: whether it only says how a closed path goes on, before its start or past its end.
     """
 
     north: float
@@ -59,9 +63,16 @@ class Segment:
     length: float
     speed: float | None = None
     label: str = ""
+    curve: Curve | None = None
+    offset: float = 0.0
+    beyond: bool = False
 
     def __str__(self) -> str:
         where = f" ({self.label})" if self.label else ""
+        if self.curve:
+            tightest = max(map(abs, self.curve.bends))
+            shape = f"that bends to a radius of {1.0 / tightest:.6g} m" if tightest else "that is straight"
+            return f"curve {shape}, {self.length:.6g} m long{where}"
         kind = f"arc of radius {1.0 / abs(self.curvature):.6g} m" if self.curvature else "line"
         return f"{kind}, {self.length:.6g} m long{where}"
 
@@ -73,7 +84,9 @@ def point_on(segment: Segment, arc_length: float) -> PathPoint:
     """The point of a segment at an arc length from its start, extended beyond both ends."""
     course, curvature = segment.course, segment.curvature
     turned = curvature * arc_length
-    if curvature:
+    if segment.curve:
+        ahead, starboard, turned = segment.curve.own_at(arc_length, segment.offset)
+    elif curvature:
         # 1 - cos(turned) loses digits where an arc is nearly straight
         ahead, starboard = math.sin(turned) / curvature, 2.0 * math.sin(0.5 * turned) ** 2 / curvature
     else:
@@ -153,6 +166,11 @@ def check_start(start: Start) -> Start:
     return start
 
 
+def bends_of(segment: Segment) -> tuple[float, float]:
+    """The least and the greatest curvature [1/m] along a segment of a reference path."""
+    return segment.curve.bends if segment.curve else (segment.curvature, segment.curvature)
+
+
 def length_of(path: Iterable[Segment]) -> float:
     """Length of a reference path [m]."""
-    return math.fsum(segment.length for segment in path)
+    return math.fsum(segment.length for segment in path if not segment.beyond)

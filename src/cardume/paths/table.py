@@ -3,18 +3,23 @@
 A vehicle's own path is the formation's reference path, offset to starboard by a constant.  Each row
 describes one segment of the own path and says which part of the reference path it stands for, so
 that an arc length on the own path and gamma, the arc length on the reference path, are a straight
-line of each other within a segment.  `offset_path` writes the table; compiled code reads it.
+line of each other within a line or an arc.  `offset_path` writes the table; compiled code reads it.
 
 Where the own path rounds a corner of the reference path on its outer side, `reference_length` is 0:
 gamma waits, `reference_rate` is 0, and `stretch` is 1 by convention, so that the vehicle goes round
 at v_L plus its correction.
+
+A curve is a segment whose curvature varies.  Its row also holds polynomials in tau, the share of its
+reference length gone by: turned angle, place in the axes of its start, and v_L.  They describe the
+*reference* curve; `OFFSET` says how far to starboard of it the own path lies.  `on_curve.py` reads them.
 """
 
 from typing import NamedTuple
 
+import numpy as np
+
 from cardume.compiler import Rows, at, compiled, gather, load, some, where
 
-SEGMENT_WIDTH = 16
 MAX_SEGMENTS = 4096  # what the search in `segment_at` covers
 
 # The header.
@@ -22,7 +27,8 @@ NUM_SEGMENTS = 0
 LENGTH_OWN = 1
 LENGTH_REFERENCE = 2
 AHEAD = 3
-HEADER_WIDTH = 4
+NUM_CURVES = 4
+HEADER_WIDTH = 5
 
 # A segment.
 START_NORTH = 0
@@ -30,17 +36,29 @@ START_EAST = 1
 START_COURSE = 2
 SIN_COURSE = 3
 COS_COURSE = 4
-CURVATURE = 5  # [1/m] of the own path, > 0 to starboard; 0 for a line
+CURVATURE = 5  # [1/m] of the own path, > 0 to starboard; 0 for a line and, where it varies, for a curve
 CENTER_NORTH = 6
 CENTER_EAST = 7
-RADIUS = 8  # [m] of the own path; 0 for a line
+RADIUS = 8  # [m] of the own path; 0 for a line and a curve
 LENGTH = 9  # [m] of the own path
 ARC_START = 10  # [m] own arc length at the start
 REFERENCE_START = 11  # [m] gamma at the start
 REFERENCE_LENGTH = 12  # [m] of the part of the reference path that it stands for
-SPEED = 13  # [m/s] v_L there
-STRETCH = 14  # [-] own length per reference length; 1 where the latter is 0
-REFERENCE_RATE = 15  # [-] reference length per own length
+SPEED = 13  # [m/s] v_L there; of a curve at its start
+STRETCH = 14  # [-] own length per reference length; 1 where the latter is 0; of a curve its mean
+REFERENCE_RATE = 15  # [-] reference length per own length; of a curve its mean
+
+# A curve besides.  A polynomial is what multiplies tau, tau^2, ..., all 0 in the row of a line or an arc.
+IS_CURVE = 16  # [-] 1
+OFFSET = 17  # [m] of the own path to starboard of the reference curve
+DEGREE = 10  # of the turned angle and of v_L
+PLACE_DEGREE = 11
+TURNED = 18  # [rad] by which the course has changed
+GONE_AHEAD = TURNED + DEGREE  # [m] place of the reference curve along its first course
+GONE_STARBOARD = GONE_AHEAD + PLACE_DEGREE  # [m] and to starboard of it
+GAINED_SPEED = GONE_STARBOARD + PLACE_DEGREE  # [m/s] v_L beyond that at the start
+SEGMENT_WIDTH = GAINED_SPEED + DEGREE
+ROW = float(SEGMENT_WIDTH)
 
 
 class PathPlace(NamedTuple):
@@ -48,6 +66,20 @@ class PathPlace(NamedTuple):
 
     segment: float = 0.0  # [-] number of the segment
     arc_length: float = 0.0  # [m] on the own path
+
+
+def rows_on_path(path: np.ndarray) -> np.ndarray:
+    """The rows of a path, without those that say how a closed one goes on beyond its ends.
+
+    Args:
+        path: [any] (n,) path table.
+
+    Returns:
+        [any] (segments, SEGMENT_WIDTH).
+    """
+    rows: np.ndarray = path[HEADER_WIDTH:].reshape(-1, SEGMENT_WIDTH)
+    begins = rows[:, ARC_START]
+    return rows[(begins >= 0.0) & (begins < path[LENGTH_OWN])]
 
 
 @compiled
@@ -59,7 +91,7 @@ def segment_value(path: Rows, segment: float, column: int) -> float:
         segment: [-] number of the segment, 0 for the first.
         column: one of the names above.
     """
-    return gather(at(path, HEADER_WIDTH + column), segment * 16.0)
+    return gather(at(path, HEADER_WIDTH + column), segment * ROW)
 
 
 @compiled
@@ -108,44 +140,16 @@ def segment_near(path: Rows, value: float, column: int, guess: float) -> float:
 
 
 @compiled
-def arc_length_at(path: Rows, path_parameter: float) -> float:
-    """Own arc length at which a vehicle has this coordination state; extends beyond both ends.
-
-    Args:
-        path: (n,) path table.
-        path_parameter: [m] gamma less the vehicle's `ahead`.
-
-    Returns:
-        [m] on the own path; behind a corner that the vehicle rounds, its far side.
-    """
-    gamma = path_parameter + load(path, AHEAD)
-    segment = segment_at(path, gamma, REFERENCE_START)
-    beyond = gamma - segment_value(path, segment, REFERENCE_START)
-    return segment_value(path, segment, ARC_START) + beyond * segment_value(path, segment, STRETCH)
-
-
-@compiled
-def path_parameter_at(path: Rows, arc_length: float) -> float:
-    """Coordination state of a vehicle at an arc length of its own path; extends beyond both ends.
-
-    Args:
-        path: (n,) path table.
-        arc_length: [m] on the own path.
-
-    Returns:
-        [m] gamma less the vehicle's `ahead`.
-    """
-    segment = segment_at(path, arc_length, ARC_START)
-    beyond = arc_length - segment_value(path, segment, ARC_START)
-    gamma = segment_value(path, segment, REFERENCE_START) + beyond * segment_value(path, segment, REFERENCE_RATE)
-    return gamma - load(path, AHEAD)
+def has_curves(path: Rows) -> bool:
+    """Whether any segment is a curve, in any lane: what a mission of lines and arcs need not pay for."""
+    return some(load(path, NUM_CURVES) > 0.0)
 
 
 @compiled
 def start_at(path: Rows, arc_length: float) -> PathPlace:
     """Memory of a vehicle that starts beside this arc length of its own path.
 
-    A vehicle whose start is given in absolute coordinates starts with `PathPlace()`, the path's start.
+    A vehicle whose start is given in absolute coordinates begins its search at the path's start, 0.
 
     Args:
         path: (n,) path table.

@@ -35,7 +35,7 @@ from cardume.simulation.tick import TROUBLE_WIDTH
 MOST_SLOTS = 64  # messages of one sender under way at once
 USBL_COLUMNS = 4
 # Families that keep one memory for each vehicle of the fleet.
-PER_OTHER = frozenset({"reference_point", "coordination", "neighbors", "usbl", "acoustics"})
+PER_OTHER = frozenset({"coordination", "neighbors", "usbl", "acoustics"})
 
 
 def make_tables(plan: Plan, lanes: bool = False) -> Tables:
@@ -76,7 +76,7 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
         memory.ravel(),
         np.concatenate([_vehicle_row(v) for v in vehicles]),
         np.concatenate([_mind_row(v) for v in vehicles]),
-        np.tile(_row(OTHERS, Acquaintance()), size * size),
+        np.tile(np.concatenate([_acquaintance(v) for v in vehicles]), size),
         np.full(size * size * USBL_COLUMNS, np.nan),
         np.concatenate([_timing_row(v, plan.tick) for v in vehicles]),
         np.concatenate([*(_key_row(v, plan.seed) for v in vehicles), random_key(plan.seed, "current")]),
@@ -157,6 +157,11 @@ def _mind_row(vehicle: VehiclePlan) -> np.ndarray:
     return _row(OWN, vehicle.setup, Whereabouts(*_estimate(vehicle)), Speech())
 
 
+def _acquaintance(vehicle: VehiclePlan) -> np.ndarray:
+    """All that the others know of a vehicle before the mission: where on its path it starts."""
+    return _row(OTHERS, Acquaintance(segment=vehicle.place.segment, arc_length=vehicle.place.arc_length))
+
+
 def _estimate(vehicle: VehiclePlan) -> tuple[float, float]:
     return vehicle.estimate or (vehicle.state.north, vehicle.state.east)
 
@@ -216,35 +221,20 @@ def _memories(vehicles: Sequence[VehiclePlan]) -> np.ndarray:
                 start = _initial_memory(vehicle, family, vehicle.laws[family])
                 parts += [start] * (len(vehicles) if family in PER_OTHER else 1)
         rows.append(np.concatenate(parts))
-    own = _stacked(rows)
-    _place_on_paths(vehicles, own)
-    return own
+    return _stacked(rows)
 
 
 def _initial_memory(vehicle: VehiclePlan, family: str, choice: Choice) -> np.ndarray:
-    """The law's own start; a position law starts at the vehicle's initial estimate."""
+    """The law's own start; a place on the path is the vehicle's, a position law starts at its initial estimate."""
     start = choice.law.initial_memory()
+    if family == "reference_point" and choice.law.memory_type is PathPlace:
+        start = np.array(vehicle.place)
     if family == "position" and choice.law.memory_type is not None:
         fields = choice.law.memory_type._fields
         for name, value in zip(("north", "east"), _estimate(vehicle), strict=True):
             if name in fields:
                 start[fields.index(name)] = value
     return start
-
-
-def _place_on_paths(vehicles: Sequence[VehiclePlan], memories: np.ndarray) -> None:
-    """Every vehicle knows at which place of its path each vehicle starts."""
-    for vehicle, row in zip(vehicles, memories, strict=True):
-        first = 0
-        for family in FAMILIES[: FAMILIES.index("reference_point")]:
-            if family in vehicle.laws:
-                first += vehicle.laws[family].law.initial_memory().size * (len(vehicles) if family in PER_OTHER else 1)
-        law = vehicle.laws["reference_point"].law
-        width = law.initial_memory().size
-        for other in vehicles:
-            if law.memory_type is PathPlace:
-                row[first : first + width] = other.place
-            first += width
 
 
 def _stacked(rows: Sequence[np.ndarray]) -> np.ndarray:

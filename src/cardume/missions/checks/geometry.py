@@ -66,7 +66,7 @@ def segments_of(reference: np.ndarray) -> list[Segment]:
             length=row[table.LENGTH],
             speed=row[table.SPEED],
         )
-        for row in reference[table.HEADER_WIDTH :].reshape(-1, table.SEGMENT_WIDTH)
+        for row in table.rows_on_path(reference)
     ]
 
 
@@ -159,7 +159,7 @@ def _aims_of(scene: Scene, craft: Craft) -> Iterator[Ranked]:
     if law.law.name != "along_path":
         return
     lookahead, key = law.value("lookahead"), scene.key(craft, "guidance.lookahead")
-    for row in craft.plan.path[table.HEADER_WIDTH :].reshape(-1, table.SEGMENT_WIDTH):
+    for row in table.rows_on_path(craft.plan.path):
         radius, length = row[table.RADIUS], row[table.LENGTH]
         if not radius:
             continue

@@ -59,7 +59,7 @@ def stations_of(path: np.ndarray, duration: float) -> Stations:
         duration: [s] of the mission; what lies further is left out.
     """
     parts, time = [], 0.0
-    for row in path[table.HEADER_WIDTH :].reshape(-1, table.SEGMENT_WIDTH):
+    for row in table.rows_on_path(path):
         if time > duration:
             break
         speed = row[table.STRETCH] * row[table.SPEED]

@@ -19,7 +19,7 @@ def check_duration(scene: Scene) -> Iterator[Finding]:
     """A mission that ends before the formation comes to the end of its path."""
     if isinstance(scene.mission.path, CirclePath):
         return
-    rows = scene.reference[table.HEADER_WIDTH :].reshape(-1, table.SEGMENT_WIDTH)
+    rows = table.rows_on_path(scene.reference)
     length = float(rows[:, table.LENGTH].sum())
     needed = float((rows[:, table.LENGTH] / rows[:, table.SPEED]).sum())
     duration = scene.mission.duration
