@@ -98,9 +98,9 @@ def fit_curve(turned: np.ndarray, length: float, speed: np.ndarray | None = None
     """The curve through turned angles; `NODES` says where.
 
     Args:
-        turned: [rad] (DEGREE + 1,) angle since the start at the nodes.
+        turned: [rad] (nodes,) angle since the start at the nodes.
         length: [m]
-        speed: [m/s] (DEGREE + 1,) v_L at the nodes; None: the formation's.
+        speed: [m/s] (nodes,) v_L at the nodes; None: the formation's.
     """
     angle = _TO_CHEBYSHEV @ turned
     waves = np.cos(turned), np.sin(turned)
@@ -123,9 +123,9 @@ def fits(curve: Curve, turned: np.ndarray, ahead: np.ndarray, starboard: np.ndar
 
     Args:
         curve: the fit.
-        turned: [rad] (DEGREE,) angle at `BETWEEN`.
-        ahead: [m] (DEGREE,) place there.
-        starboard: [m] (DEGREE,)
+        turned: [rad] (places,) angle at `BETWEEN`.
+        ahead: [m] (places,) place there.
+        starboard: [m] (places,)
         rounding: [m] of the coordinates.
     """
     room = 1e-11 * max(1.0, curve.length) + rounding
@@ -139,7 +139,7 @@ def fits_speed(curve: Curve, speed: np.ndarray) -> bool:
 
     Args:
         curve: the fit.
-        speed: [m/s] (DEGREE,) v_L at `BETWEEN`.
+        speed: [m/s] (places,) v_L at `BETWEEN`.
     """
     found = (curve.speed or 0.0) + np.array([_value(curve.gained_speed, tau) for tau in BETWEEN])
     return bool(abs(found - speed).max() < 1e-10)

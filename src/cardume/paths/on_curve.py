@@ -66,7 +66,7 @@ class Bracket(NamedTuple):
 
 @compiled
 def is_curve(path: Rows, segment: float) -> bool:
-    """Whether a segment is a curve."""
+    """Whether a segment, by its number [-], is a curve."""
     return segment_value(path, segment, IS_CURVE) > 0.5
 
 
