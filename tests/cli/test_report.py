@@ -78,7 +78,7 @@ def test_quiet_says_nothing(run_folder: Path, cardume: Cardume) -> None:
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (["--figure", "plam"], "--figure plam: no such figure. Did you mean 'plan'? Valid: plan, errors"),
+        (["--figure", "plam"], "--figure plam: no such figure. Did you mean 'plan'? Valid: plan, space, errors"),
         (["--figure", "plan", "--width", "88"], "--width '88' is no width; write a number with mm, cm or in, as 88mm"),
         (["--figure", "plan", "--width", "2mm"], "--width 2mm cannot be drawn; between"),
         (["--format", "pdf"], "--format and --width are about figures; add --figure NAME"),

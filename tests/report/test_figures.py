@@ -14,7 +14,7 @@ import pytest
 
 from cardume.report import style
 from cardume.report.error_panels import draw_errors
-from cardume.report.figures import save_figures
+from cardume.report.figures import FIGURES, save_figures
 from cardume.report.plan import draw_plan
 from cardume.simulation.flight import Flight, Metrics
 from report.synthetic import make_flight
@@ -67,6 +67,15 @@ def test_any_flight_can_be_drawn_without_a_murmur(name: str, width: float, caplo
         warnings.simplefilter("error")
         for draw in (draw_plan, draw_errors):
             draw(odd_flights()[name], width).canvas.draw()
+    assert caplog.records == []
+
+
+@pytest.mark.parametrize("figure", set(FIGURES) - {"plan", "errors"})
+@pytest.mark.parametrize("name", ["no rows", "lost halfway", "all lost", "standing still", "alone"])
+def test_any_figure_can_be_drawn_without_a_murmur(figure: str, name: str, caplog: pytest.LogCaptureFixture) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        FIGURES[figure](odd_flights()[name], 3.5).canvas.draw()
     assert caplog.records == []
 
 

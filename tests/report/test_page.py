@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from cardume.report.message_lanes import links
 from cardume.report.page import page as pages
 from cardume.report.page.page import LibraryMissing, make_page, write_page
 from cardume.report.page.series import series_view
 from cardume.report.page.store import MOST_CELLS, Store, packed
-from cardume.report.page.talk import links
 from cardume.simulation.flight import CHANNELS, MESSAGE_COLUMNS, Flight
 from report.runs import HOSTILE, hostile_run, make_run
 from report.synthetic import make_flight

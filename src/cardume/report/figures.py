@@ -5,15 +5,27 @@ from pathlib import Path
 from typing import Any
 
 from cardume.missions.atomic import new_file
-from cardume.missions.runs import Run
 from cardume.report import style
+from cardume.report.command_panels import draw_commands
+from cardume.report.coordination_panels import draw_coordination
+from cardume.report.depth_panels import draw_depth
 from cardume.report.error_panels import draw_errors
+from cardume.report.estimation_panels import draw_estimation
+from cardume.report.message_lanes import draw_messages
 from cardume.report.plan import draw_plan
+from cardume.report.space import draw_space
 from cardume.simulation.flight import Flight
 
-FIGURES: Mapping[str, Callable[[Run, float], Any]] = {
-    "plan": lambda run, width: draw_plan(run.flight, width),
-    "errors": lambda run, width: draw_errors(run.flight, width),
+# each takes a `Flight`, a `Run` or a log opened in xarray, and a width [inch]; each gives a matplotlib figure
+FIGURES: Mapping[str, Callable[[Any, float], Any]] = {
+    "plan": draw_plan,
+    "space": draw_space,
+    "errors": draw_errors,
+    "estimation": draw_estimation,
+    "coordination": draw_coordination,
+    "commands": draw_commands,
+    "messages": draw_messages,
+    "depth": draw_depth,
 }
 ALWAYS = {"plan": draw_plan, "errors": draw_errors}  # what every run gets
 RESOLUTION = 150  # [dots per inch] of PNG files
@@ -40,16 +52,16 @@ def save_figures(flight: Flight, folder: Path) -> None:
                 figure.savefig(folder / f"{name}{kind}", dpi=RESOLUTION, metadata=NO_DATES[kind])
 
 
-def save_figure(path: Path, name: str, run: Run, width: float | None = None) -> None:
+def save_figure(path: Path, name: str, log: Any, width: float | None = None) -> None:
     """Draw one figure, complete or not at all; the same run gives the same bytes.
 
     Args:
         path: of the new file; its ending, .svg, .pdf or .png, says what it becomes.
         name: one of FIGURES.
-        run: just flown or read back.
+        log: a `Flight`, a `Run`, or a log opened in xarray.
         width: [inch] of the figure; None: two columns of a journal.
     """
     with style.styled():
-        figure = FIGURES[name](run, style.WIDTH if width is None else width)
+        figure = FIGURES[name](log, style.WIDTH if width is None else width)
         with new_file(path) as partial:
             figure.savefig(partial, format=path.suffix[1:], dpi=FINE, metadata=NO_DATES[path.suffix])

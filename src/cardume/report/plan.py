@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from cardume.report import style
+from cardume.report.logs import as_flight
 from cardume.simulation.flight import Flight
 
 LEFT, RIGHT, BOTTOM = 0.58, 0.12, 0.45  # [inch] around the axes
@@ -16,16 +17,17 @@ INSTANTS = 5
 WEAKEST_CURRENT = 1e-3  # [m/s] that is worth an arrow
 
 
-def draw_plan(flight: Flight, width: float = style.WIDTH) -> Any:
+def draw_plan(log: Any, width: float = style.WIDTH) -> Any:
     """Draw the plan view of a flight, north up, equal scales.
 
     Args:
-        flight: what was flown.
+        log: a `Flight`, a `Run`, or a log opened in xarray.
         width: [inch] of the figure; its height follows from the paths.
 
     Returns:
         A matplotlib figure.
     """
+    flight = as_flight(log)
     with style.styled():
         inner = width - LEFT - RIGHT
         low, high = _limits(flight, inner)

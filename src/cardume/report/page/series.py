@@ -5,9 +5,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cardume.report.message_lanes import links
 from cardume.report.page.layout import axis, base_layout
 from cardume.report.page.store import GRAY, TIMES, Store, color, plotly_text
-from cardume.report.page.talk import lane_annotations, lane_layout, lane_traces, links
+from cardume.report.page.talk import lane_annotations, lane_layout, lane_traces
 from cardume.simulation.flight import Flight
 
 PANEL, GAP, TOP, BOTTOM = 118, 40, 60, 50  # [pixel]

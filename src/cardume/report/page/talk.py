@@ -4,17 +4,11 @@ from typing import Any
 
 import numpy as np
 
+from cardume.report.message_lanes import lane_words
 from cardume.report.page.store import color, packed, plotly_text, shown_messages
-from cardume.report.table import number
 from cardume.simulation.flight import Flight
 
 TALL, BASE, LABEL = 0.26, 0.2, -0.28  # [lane] of a tick, where it stands, and the words above
-
-
-def links(flight: Flight) -> list[tuple[int, int]]:
-    """Who spoke to whom, by place in the fleet, in the fleet's order."""
-    pairs = zip(flight.messages["sender"], flight.messages["receiver"], strict=True)
-    return sorted({(int(sender), int(receiver)) for sender, receiver in pairs})
 
 
 def lane_layout(lanes: list[tuple[int, int]]) -> dict[str, Any]:
@@ -78,17 +72,12 @@ def ticks(times: np.ndarray, start: float, end: float) -> tuple[np.ndarray, np.n
 
 def _label(flight: Flight, pair: tuple[int, int], lane: int, y: str) -> dict[str, Any]:
     sender, receiver = (plotly_text(flight.vehicle_names[k]) for k in pair)
-    here = (np.asarray(flight.messages["sender"]) == pair[0]) & (np.asarray(flight.messages["receiver"]) == pair[1])
-    lost = np.asarray(flight.messages["lost"], float)[here] > 0.5
-    delay = (np.asarray(flight.messages["time_received"]) - np.asarray(flight.messages["time_sent"]))[here][~lost]
-    heard = f"{np.sum(~lost)} of {len(lost)} arrived"
-    late = f", {number(float(np.mean(delay)))} s on the way" if delay.size else ""
     return {
         "type": "scatter",
         "mode": "text",
         "x": [0.0],
         "y": [lane + LABEL],
-        "text": [f" {sender} → {receiver}: {heard}{late}"],
+        "text": [f" {sender} → {receiver}: {lane_words(flight, pair)}"],
         "textposition": "middle right",
         "textfont": {"size": 11},
         "yaxis": y,
