@@ -7,7 +7,8 @@
     flight.channels["north"]                       # (time, vehicle) array, m
 
 `load` takes a mission file, a path file or the name of a built-in mission, and raises `CardumeError`
-with what is wrong and what to do; `fly` gives a `Flight`.  Each name is imported when it is used.
+with what is wrong and what to do; `fly` gives a `Flight`, `compare` flies missions side by side and gives
+a `Comparison`.  Each name is imported when it is used.
 """
 
 import importlib
@@ -19,15 +20,18 @@ if typing.TYPE_CHECKING:
     from cardume.missions.mission import Mission
     from cardume.missions.opening import open_mission as load
     from cardume.simulation.flight import Flight
+    from cardume.studies.comparing import Comparison, compare
 
     __version__: str
 
-__all__ = ["CardumeError", "Flight", "Mission", "__version__", "fly", "load"]
+__all__ = ["CardumeError", "Comparison", "Flight", "Mission", "__version__", "compare", "fly", "load"]
 
 _PLACES = {
     "CardumeError": ("cardume.errors", "CardumeError"),
+    "Comparison": ("cardume.studies.comparing", "Comparison"),
     "Flight": ("cardume.simulation.flight", "Flight"),
     "Mission": ("cardume.missions.mission", "Mission"),
+    "compare": ("cardume.studies.comparing", "compare"),
     "fly": ("cardume.missions.flying", "fly_mission"),
     "load": ("cardume.missions.opening", "open_mission"),
 }

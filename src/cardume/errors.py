@@ -20,14 +20,14 @@ MOST_SHOWN = 20
 
 
 class Position(NamedTuple):
-    """Where a value was given: `source` is a file, or the `--set ...` that gave it, then line 0."""
+    """Where a value was given: `source` is a file, or the `--set` or `--vary` that gave it, then line 0."""
 
     source: str
     line: int
     key: str
 
     def __str__(self) -> str:
-        is_said = self.source.startswith(f"--set {self.key}=")
+        is_said = self.source.startswith((f"--set {self.key}=", f"--vary {self.key}="))
         parts = (self.source, str(self.line or ""), "" if is_said else self.key)
         return ":".join(part for part in parts if part)
 

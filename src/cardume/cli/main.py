@@ -18,6 +18,7 @@ from typing import Any
 import click
 
 from cardume.cli.check import check
+from cardume.cli.compare import compare
 from cardume.cli.list import list_
 from cardume.cli.new import new
 from cardume.cli.report import report
@@ -67,7 +68,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, report, list_, new):
+for _command in (run, check, compare, report, list_, new):
     cli.add_command(_command)
 
 

@@ -2,13 +2,19 @@
 
 import sys
 import threading
+import time
 from types import TracebackType
 from typing import Any
 
 import click
 
 PATIENCE = 1.0  # [s] before anything is shown
-WORDS = {"compile": "compiling the engine, once per installation", "fly": "flying"}
+WORDS = {
+    "compile": "compiling the engine, once per installation",
+    "fly": "flying",
+    "compare": "flying missions",
+}
+PACED = ("compare",)  # stages whose pieces take equally long, so that their rate says when they end
 
 
 class Progress:
@@ -25,6 +31,7 @@ class Progress:
         self._timer: threading.Timer | None = None
         self._bar: Any = None
         self._stage, self._done, self._total = "", 0, 0
+        self._began = 0.0
 
     def __enter__(self) -> "Progress":
         return self
@@ -37,7 +44,7 @@ class Progress:
             return
         if stage != self._stage:
             self._end_stage()
-            self._stage = stage
+            self._stage, self._began = stage, time.monotonic()
             # A timer, for a single piece of the compilation takes longer than the patience.
             self._timer = threading.Timer(PATIENCE, self._show)
             self._timer.daemon = True
@@ -45,9 +52,16 @@ class Progress:
         with self._lock:
             self._done, self._total = done, total
             if self._bar is not None:
-                self._bar.update(self._bar.task_ids[0], completed=done, total=total)
+                self._bar.update(self._bar.task_ids[0], completed=done, total=total, pace=self._pace())
         if done >= total:
             self._end_stage()
+
+    def _pace(self) -> str:
+        """Rate and time left, where they mean something."""
+        seconds = time.monotonic() - self._began
+        if self._stage not in PACED or not self._done or not seconds:
+            return ""
+        return pace(self._done, self._total, seconds)
 
     def _end_stage(self) -> None:
         if self._timer is not None:
@@ -70,8 +84,25 @@ class Progress:
             if self._timer is None:
                 return
             text, count = TextColumn("{task.description}"), TextColumn("{task.completed:.0f} of {task.total:.0f}")
+            paced = TextColumn("{task.fields[pace]}")
             console = Console(stderr=True)
-            bar = Progress(text, BarColumn(24), count, TimeElapsedColumn(), console=console, transient=True)
-            bar.add_task(WORDS.get(self._stage, self._stage), completed=self._done, total=self._total)
+            bar = Progress(text, BarColumn(24), count, TimeElapsedColumn(), paced, console=console, transient=True)
+            words = WORDS.get(self._stage, self._stage)
+            bar.add_task(words, completed=self._done, total=self._total, pace=self._pace())
             bar.start()
             self._bar = bar
+
+
+def pace(done: int, total: int, seconds: float) -> str:
+    """How fast it goes, and how long it will still take.
+
+    Args:
+        done: pieces.
+        total: pieces.
+        seconds: [s] that what is done took.
+    """
+    rate = done / seconds
+    fast = f"{rate:.3g} per second" if rate >= 1.0 else f"{60.0 * rate:.2g} per minute"
+    left = (total - done) / rate
+    still = f"{left:.0f} s" if left < 120.0 else f"{left / 60.0:.0f} min" if left < 7200.0 else f"{left / 3600.0:.1f} h"
+    return f"{fast}, {still} left"

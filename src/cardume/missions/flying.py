@@ -13,7 +13,7 @@ from cardume.missions.mission import Mission
 from cardume.missions.planning import Planned, make_plan
 from cardume.paths.outline import outline
 from cardume.simulation.flight import Flight
-from cardume.simulation.fly import Flown, fly
+from cardume.simulation.fly import Flown, Trouble, fly
 from cardume.simulation.plan import Plan
 from cardume.simulation.recording import CHANNELS, LOG, MESSAGE_LOG, MESSAGES, RECORDS, MessageRow
 from cardume.simulation.results import metrics_of
@@ -77,7 +77,7 @@ def flight_of(name: str, planned: Planned, flown: Flown, wall_seconds: float = m
         messages=_messages(plan, flown),
         metrics=metrics_of(flown),
         reason="failed" if trouble else "interrupted" if flown.stopped else "completed",
-        failure=_failure(trouble.vehicle, trouble.signal, trouble.time) if trouble else None,
+        failure=failure_of(trouble) if trouble else None,
         flown=flown.ticks * plan.tick,
         wall_seconds=wall_seconds,
         reference_path=outline(planned.reference)[:, 1:],
@@ -97,11 +97,17 @@ def _messages(plan: Plan, flown: Flown) -> dict[str, np.ndarray]:
     return columns
 
 
-def _failure(vehicle: str, signal: str, seconds: float) -> str:
+def failure_of(trouble: Trouble) -> str:
+    """Why a mission failed, and what to do, in words.
+
+    Args:
+        trouble: the first number that was not one.
+    """
     advice = {
         "current": "it left the grid of the current, or came to a hole in it: move origin or shorten the path",
         "state": "its model diverged: shorten plant_step, or look at its gains",
         "reference": "a law aboard gave no number: look at its sensors and its gains",
         "position estimate": "its estimator diverged: look at its fixes and gains",
     }
-    return f"the {signal} of vehicle {vehicle} was no number at {seconds:g} s; {advice[signal]}"
+    what = f"the {trouble.signal} of vehicle {trouble.vehicle} was no number at {trouble.time:g} s"
+    return f"{what}; {advice[trouble.signal]}"

@@ -11,7 +11,7 @@ import os
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from cardume.errors import CardumeError, DataError, InputError
 from cardume.missions.atomic import new_directory, renewed_directory, write_file
@@ -21,6 +21,7 @@ from cardume.missions.summary import FILE_NAME, judge, read_summary, summarize, 
 from cardume.simulation.flight import Flight
 from cardume.units import printable
 
+Filled = TypeVar("Filled")
 RUNS = Path("runs")
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -40,7 +41,9 @@ class Destination(NamedTuple):
     ours: tuple[str, ...] = ()  # entries of the earlier run, which make place
 
 
-def choose_destination(mission_name: str, given: Path | None = None) -> Destination:
+def choose_destination(
+    mission_name: str, given: Path | None = None, read: Callable[[Path], dict[str, Any]] = read_summary
+) -> Destination:
     """Decide, before anything is flown, where the results will go, and refuse what cannot work.
 
     Without a directory given it is the next free one of `runs/NAME/001`, `002`, ...; one that is
@@ -49,6 +52,7 @@ def choose_destination(mission_name: str, given: Path | None = None) -> Destinat
     Args:
         mission_name: safe as the name of a folder.
         given: the directory that the user wants.
+        read: gives what an earlier run left to say in a directory, and which `files` are its own.
 
     Raises:
         InputError: it holds something else, is no directory, or cannot be written to.
@@ -57,7 +61,7 @@ def choose_destination(mission_name: str, given: Path | None = None) -> Destinat
         parent = RUNS / mission_name
         destination = Destination(parent / f"{_last_number(parent) + 1:03d}", is_numbered=True)
     else:
-        destination = Destination(given, is_there=given.is_dir(), ours=_earlier_run(given))
+        destination = Destination(given, is_there=given.is_dir(), ours=_earlier_run(given, read))
     _refuse_unwritable(destination.directory)
     return destination
 
@@ -85,15 +89,36 @@ def write_results(
     Raises:
         ResultsError: the disk is full, or refused otherwise; nothing is left behind.
     """
+    return write_atomically(
+        destination,
+        mission.name,
+        lambda folder, final: _fill(folder, final, mission, flight, version, draw),
+    )
+
+
+def write_atomically(destination: Destination, name: str, fill: Callable[[Path, Path], Filled]) -> tuple[Path, Filled]:
+    """Fill a destination, complete or not at all.
+
+    Args:
+        destination: from `choose_destination`.
+        name: that it was chosen for.
+        fill: writes into the first folder what will lie in the second.
+
+    Returns:
+        The directory, and what `fill` returned.
+
+    Raises:
+        ResultsError: the disk is full, or refused otherwise; nothing is left behind.
+    """
     while True:
         try:
             with _opened(destination) as folder:
-                summary = _fill(folder, destination.directory, mission, flight, version, draw)
-            return destination.directory, summary
+                filled = fill(folder, destination.directory)
+            return destination.directory, filled
         except FileExistsError as problem:
             if not destination.is_numbered:
                 raise ResultsError(_refusal(destination.directory, problem)) from None
-            destination = choose_destination(mission.name)
+            destination = choose_destination(name)
         except OSError as problem:
             raise ResultsError(_refusal(destination.directory, problem)) from problem
 
@@ -151,7 +176,7 @@ def _last_number(parent: Path) -> int:
         return 0
 
 
-def _earlier_run(directory: Path) -> tuple[str, ...]:
+def _earlier_run(directory: Path, read: Callable[[Path], dict[str, Any]]) -> tuple[str, ...]:
     """The entries of an earlier run in a directory; none where it is new or empty."""
     name = printable(str(directory))
     advice = "give a new directory with -o"
@@ -162,7 +187,7 @@ def _earlier_run(directory: Path) -> tuple[str, ...]:
     try:
         if not os.listdir(directory):
             return ()
-        listed = {str(file) for file in read_summary(directory).get("files") or ()}
+        listed = {str(file) for file in read(directory).get("files") or ()}
         found = set(_files(directory))  # only now: this may be somebody's whole disk
     except OSError as problem:
         raise InputError(f"-o {name}: cannot be read: {problem.strerror}; {advice}") from None

@@ -70,13 +70,19 @@ def fly(
     return Flown(plan, tables, now)
 
 
-def fly_batch(plans: Sequence[Plan], threads: int = 2, lanes: bool = False) -> list[Flown]:
+def fly_batch(
+    plans: Sequence[Plan],
+    threads: int = 2,
+    lanes: bool = False,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> list[Flown]:
     """Fly many missions on a pool of threads; the bits are those of `fly`, whatever the number of threads.
 
     Args:
         plans: the missions; for lanes, of the same laws, sizes and lengths.
         threads: [-] how many at once.
         lanes: [-] fly eight in one SIMD register each.
+        should_stop: asked every few milliseconds; then all that fly or wait end where they are.
 
     Returns:
         The missions after their flight, in order.
@@ -87,19 +93,27 @@ def fly_batch(plans: Sequence[Plan], threads: int = 2, lanes: bool = False) -> l
     if lanes:
         groups = [plans[k : k + WIDTH] for k in range(0, len(plans), WIDTH)]
         with ThreadPoolExecutor(threads) as pool:
-            return [flown for group in pool.map(_fly_lanes, groups) for flown in group]
+            return [flown for group in pool.map(lambda g: _fly_lanes(g, should_stop), groups) for flown in group]
     with ThreadPoolExecutor(threads) as pool:
-        return list(pool.map(fly, plans))
+        return list(pool.map(lambda plan: fly(plan, should_stop=should_stop), plans))
 
 
-def _fly_lanes(plans: Sequence[Plan]) -> list[Flown]:
+def _fly_lanes(plans: Sequence[Plan], should_stop: Callable[[], bool]) -> list[Flown]:
     if len({plan.num_ticks for plan in plans}) > 1:
         raise ValueError("missions in lanes must last equally long")
     joined = join([make_tables(plan, lanes=True) for plan in plans])
-    ticks = int(advance(joined, 0, plans[0].num_ticks))
+    ticks, total = 0, plans[0].num_ticks
+    while ticks < total and not should_stop():
+        stop = min(ticks + SLICE, total)
+        ticks = int(advance(joined, ticks, stop))
+        if ticks < stop:
+            break  # every lane failed
     singles = [lane(joined, k) for k in range(len(plans))]
     # One that fails in a lane goes on until the others are done; alone it ends where it failed.
-    return [fly(p) if trouble_in(p, t) else Flown(p, t, ticks) for p, t in zip(plans, singles, strict=True)]
+    return [
+        fly(p, should_stop=should_stop) if trouble_in(p, t) else Flown(p, t, ticks, stopped=ticks < total)
+        for p, t in zip(plans, singles, strict=True)
+    ]
 
 
 def trouble_in(plan: Plan, tables: Tables) -> Trouble | None:

@@ -1,0 +1,171 @@
+"""What a comparison leaves behind: every number of every run, what they say, and a figure; complete or not at all.
+
+DIR/compare.csv     one row per arm and seed, one column per metric
+DIR/compare.json    arms, means, differences and intervals
+DIR/compare.png     and .svg, what the caller draws
+"""
+
+import csv
+import io
+import json
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from cardume.errors import DataError
+from cardume.missions.results import Destination, choose_destination, write_atomically
+from cardume.simulation.flight import METRICS
+from cardume.studies.comparing import Comparison, value_of
+from cardume.studies.statistics import Estimate
+from cardume.units import printable
+
+FORMAT_VERSION = 1
+FILE_NAME = "compare.json"
+TABLE_NAME = "compare.csv"
+
+
+def comparison_destination(name: str, given: Path | None) -> Destination:
+    """Where a comparison will be kept; see `choose_destination`.
+
+    Args:
+        name: that the user has for it.
+        given: the directory that the user wants.
+
+    Raises:
+        InputError: it holds something else, is no directory, or cannot be written to.
+    """
+    return choose_destination(name, given, read_comparison)
+
+
+def keep_comparison(
+    destination: Destination,
+    name: str,
+    comparison: Comparison,
+    *,
+    words: Sequence[str] = (),
+    version: str,
+    draw: Callable[[Path], None] | None = None,
+) -> tuple[Path, dict[str, Any]]:
+    """Write everything.
+
+    Args:
+        destination: from `comparison_destination`.
+        name: that it was chosen for.
+        comparison: what was flown.
+        words: what it says.
+        version: of cardume.
+        draw: fills the folder it is given with figures.
+
+    Returns:
+        The directory, and what compare.json says.
+
+    Raises:
+        ResultsError: the disk is full, or refused otherwise; nothing is left behind.
+    """
+
+    def fill(folder: Path, _final: Path) -> dict[str, Any]:
+        (folder / TABLE_NAME).write_text(to_csv(comparison), encoding="utf-8", newline="")
+        if draw is not None:
+            draw(folder)
+        files = sorted([*(path.name for path in folder.iterdir()), FILE_NAME])
+        summary = summarize_comparison(comparison, words=words, version=version, files=files)
+        (folder / FILE_NAME).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        return summary
+
+    return write_atomically(destination, name, fill)
+
+
+def read_comparison(directory: Path) -> dict[str, Any]:
+    """What an earlier comparison left in a directory.
+
+    Args:
+        directory: of the comparison.
+
+    Raises:
+        DataError: missing, damaged, or not written by cardume.
+    """
+    path = directory / FILE_NAME
+    name = printable(str(path))
+    try:
+        found = json.loads(path.read_bytes())
+    except OSError as problem:
+        raise DataError(f"{name} cannot be read: {problem.strerror}; give the directory of a comparison") from None
+    except (ValueError, RecursionError):
+        raise DataError(f"{name} is damaged: it is not JSON; compare again") from None
+    if not isinstance(found, dict) or "cardume_compare" not in found:
+        raise DataError(f"{name} was not written by cardume; give the directory of a comparison")
+    return found
+
+
+def to_csv(comparison: Comparison) -> str:
+    """One row per arm and seed: all metrics of the fleet, and what was asked for of single vehicles.
+
+    Args:
+        comparison: what was flown.
+    """
+    names = [*METRICS, *(metric for metric in comparison.metrics if "." in metric)]
+    rows = [
+        [arm.label, seed, "" if run.met is None else int(run.met), run.failure or ""]
+        + ["" if math.isnan(value) else repr(value) for value in (value_of(run, name) for name in names)]
+        for arm, runs in zip(comparison.arms, comparison.runs, strict=True)
+        for seed, run in zip(comparison.seeds, runs, strict=True)
+    ]
+    kept = [k for k in range(len(names)) if any(row[4 + k] for row in rows)]
+    units = [METRICS[name.rpartition(".")[2]].unit for name in names]
+    titles = [f"{names[k]} [{units[k]}]" if units[k] else names[k] for k in kept]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["arm", "seed", "requirements_met", "failure", *titles])
+    writer.writerows([*row[:4], *(row[4 + k] for k in kept)] for row in rows)
+    return text.getvalue()
+
+
+def summarize_comparison(
+    comparison: Comparison, *, words: Sequence[str] = (), version: str, files: Sequence[str] = ()
+) -> dict[str, Any]:
+    """A comparison as plain values; what is no number becomes None.
+
+    Args:
+        comparison: what was flown.
+        words: what it says.
+        version: of cardume.
+        files: written beside the summary.
+    """
+    return {
+        "cardume_compare": FORMAT_VERSION,
+        "version": version,
+        "varied": list(comparison.varied),
+        "seeds": list(comparison.seeds),
+        "asked": comparison.asked,
+        "interrupted": comparison.is_interrupted,
+        "confidence": 0.95,
+        "shared_confidence": comparison.shared_confidence,
+        "units": {metric: METRICS[metric.rpartition(".")[2]].unit for metric in comparison.metrics},
+        "arms": [_arm(comparison, place) for place in range(len(comparison.arms))],
+        "conclusions": list(words),
+        "files": list(files),
+    }
+
+
+def _arm(comparison: Comparison, place: int) -> dict[str, Any]:
+    arm, met = comparison.arms[place], comparison.met(place)
+    told: dict[str, Any] = {
+        "label": arm.label,
+        "mission": arm.given,
+        "changes": list(arm.changes),
+        "requirements_met": None if met is None else met[0],
+        "failures": [{"seed": seed, "failure": why} for seed, why in comparison.failures(place)],
+        "metrics": {metric: _plain(comparison.estimates[metric][place]) for metric in comparison.metrics},
+    }
+    if place:
+        told["differences"] = {
+            metric: _plain(comparison.differences[metric][place - 1]) | {"real": comparison.is_real[metric][place - 1]}
+            for metric in comparison.metrics
+        }
+    return told
+
+
+def _plain(estimate: Estimate) -> dict[str, float | int | None]:
+    found = {key: value if math.isfinite(value) else None for key, value in estimate._asdict().items()}
+    return found | {"size": estimate.size}

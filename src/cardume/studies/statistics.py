@@ -1,0 +1,198 @@
+"""What a handful of runs says: means, differences in pairs, and how sure they are."""
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+from statistics import NormalDist
+from typing import NamedTuple
+
+import numpy as np
+
+CONFIDENCE = 0.95
+RESAMPLES = 20_000
+KEY = 20_240_229  # of the resampling: the same numbers give the same intervals
+MOST_AT_ONCE = 4_000_000  # random numbers held at a time
+FEW = 8  # values below which the bootstrap has too little to draw from
+ROUNDING = 1e-12  # of a value: what is smaller comes of the arithmetic
+
+
+class Estimate(NamedTuple):
+    """A mean with its confidence interval, in the unit of its values; NaN where there is none."""
+
+    mean: float
+    low: float
+    high: float
+    size: int  # values that it was made from
+
+
+def estimate(values: np.ndarray, confidence: float = CONFIDENCE) -> Estimate:
+    """The mean of a sample, and its interval by the expanded percentile bootstrap.
+
+    Means of samples drawn with replacement lie too close together by sqrt((n - 1) / n) and have no tails
+    of Student's t; the percentiles taken are moved outwards by both: Phi(-sqrt(n / (n - 1)) t). A handful of
+    values, whose resampled means never leave their range, gets Student's interval.
+
+    Args:
+        values: (n,) [any] one per run; those that are no number are left out.
+        confidence: [-] of the interval.
+
+    Returns:
+        Mean, low and high end [any]; the ends are NaN with fewer than two values.
+
+    Source: Hesterberg (2015), What Teachers Should Know About the Bootstrap, Am. Statistician 69(4), 371-386.
+    """
+    sample = np.asarray(values, float)
+    sample = sample[np.isfinite(sample)]
+    count = sample.size
+    if count == 0:
+        return Estimate(math.nan, math.nan, math.nan, 0)
+    mean = float(sample.mean())
+    if count == 1:
+        return Estimate(mean, math.nan, math.nan, 1)
+    if float(np.ptp(sample)) <= ROUNDING * abs(mean):
+        return Estimate(mean, mean, mean, count)
+    if count < FEW:
+        half = student_quantile(0.5 + 0.5 * confidence, count - 1) * float(sample.std(ddof=1)) / math.sqrt(count)
+        return Estimate(mean, mean - half, mean + half, count)
+    tail = expanded_tail(count, confidence)
+    low, high = np.quantile(resampled_means(sample), (tail, 1.0 - tail))
+    return Estimate(mean, float(low), float(high), count)
+
+
+def paired_difference(values: np.ndarray, baseline: np.ndarray, confidence: float = CONFIDENCE) -> Estimate:
+    """The mean of values less those of a baseline with the same random numbers, and its interval.
+
+    Args:
+        values: (n,) [any] one per run.
+        baseline: (n,) [any] of the same runs; pairs of which one is no number are left out.
+        confidence: [-] of the interval.
+
+    Returns:
+        As `estimate` [any].
+    """
+    one, other = np.asarray(values, float), np.asarray(baseline, float)
+    difference = one - other
+    is_rounding = np.abs(difference) <= ROUNDING * np.maximum(1.0, np.abs(other))
+    return estimate(np.where(is_rounding, 0.0, difference), confidence)
+
+
+def is_clear(difference: Estimate) -> bool:
+    """Whether zero lies outside the interval.
+
+    Args:
+        difference: [any] of two arms.
+    """
+    return difference.low > 0.0 or difference.high < 0.0
+
+
+def shared_confidence(count: int, confidence: float = CONFIDENCE) -> float:
+    """The confidence [-] for each of several intervals with which all of them hold together (Bonferroni).
+
+    Args:
+        count: how many intervals.
+        confidence: [-] for all of them.
+    """
+    return 1.0 - (1.0 - confidence) / max(count, 1)
+
+
+def share_interval(successes: int, count: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
+    """Wilson's interval for a probability.
+
+    Args:
+        successes: among the runs.
+        count: runs.
+        confidence: [-] of the interval.
+
+    Returns:
+        Low and high end [-].
+
+    Source: Wilson (1927), Probable inference, J. Am. Stat. Assoc. 22, 209-212.
+    """
+    if count == 0:
+        return 0.0, 1.0
+    z = NormalDist().inv_cdf(0.5 + 0.5 * confidence)
+    share, weight = successes / count, z * z / count
+    middle = (share + 0.5 * weight) / (1.0 + weight)
+    half = z * math.sqrt(share * (1.0 - share) / count + 0.25 * weight / count) / (1.0 + weight)
+    return max(0.0, middle - half), min(1.0, middle + half)
+
+
+def resampled_means(sample: np.ndarray) -> np.ndarray:
+    """Means (RESAMPLES,) [any] of samples drawn with replacement; drawn alike for samples of equal size.
+
+    Args:
+        sample: (n,) [any] without NaN.
+    """
+    if sample.size * RESAMPLES <= MOST_AT_ONCE:
+        return np.asarray(sample[_places(sample.size)].mean(axis=1))
+    rows, generator = max(1, MOST_AT_ONCE // sample.size), np.random.Philox(KEY)
+    counts = [min(rows, RESAMPLES - start) for start in range(0, RESAMPLES, rows)]
+    return np.concatenate([sample[_drawn(generator, count, sample.size)].mean(axis=1) for count in counts])
+
+
+@lru_cache(maxsize=4)
+def _places(size: int) -> np.ndarray:
+    return _drawn(np.random.Philox(KEY), RESAMPLES, size)
+
+
+def _drawn(generator: np.random.Philox, count: int, size: int) -> np.ndarray:
+    """Places (count, size) in a sample, from raw bits, which no version of NumPy may change."""
+    raw = generator.random_raw(count * size).reshape(count, size)
+    places: np.ndarray = ((raw >> np.uint64(11)) * (2.0**-53 * size)).astype(np.int64)
+    return places
+
+
+def expanded_tail(count: int, confidence: float) -> float:
+    """The share [-] of resampled means below the interval.
+
+    Args:
+        count: values in the sample, at least 2.
+        confidence: [-] of the interval.
+    """
+    wide = math.sqrt(count / (count - 1)) * student_quantile(0.5 + 0.5 * confidence, count - 1)
+    return NormalDist().cdf(-wide)
+
+
+def student_quantile(probability: float, freedom: int) -> float:
+    """The quantile [-] of Student's t above one half.
+
+    Args:
+        probability: [-] in [0.5, 1).
+        freedom: degrees of freedom, at least 1.
+    """
+    within = 2.0 * probability - 1.0
+    high = 1.0
+    while student_within(high, freedom) < within and high < 1e12:
+        high *= 2.0
+    return _bisected(lambda t: student_within(t, freedom) < within, 0.0, high)
+
+
+def student_within(t: float, freedom: int) -> float:
+    """The probability [-] that Student's t lies within (-t, t).
+
+    A(t | n) = sin th (1 + cos^2 th / 2 + 1 3 / (2 4) cos^4 th + ...),  th = atan(t / sqrt n),  for even n, and
+    2 / pi (th + sin th (cos th + 2 / 3 cos^3 th + ...)) for odd n
+
+    Args:
+        t: [-] at least 0.
+        freedom: degrees of freedom, at least 1.
+
+    Source: Abramowitz & Stegun (1964), 26.7.3 and 26.7.4.
+    """
+    angle = math.atan(t / math.sqrt(freedom))
+    sine, cosine = math.sin(angle), math.cos(angle)
+    is_odd = freedom % 2
+    term, total = (cosine, cosine) if is_odd else (1.0, 1.0)
+    for k in range(3 if is_odd else 2, freedom - 1, 2):
+        term *= cosine * cosine * (k - 1) / k
+        total += term
+    if not is_odd:
+        return sine * total
+    return 2.0 / math.pi * (angle + (sine * total if freedom > 1 else 0.0))
+
+
+def _bisected(is_below: Callable[[float], bool], low: float, high: float) -> float:
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if is_below(middle) else (low, middle)
+    return 0.5 * (low + high)
