@@ -14,7 +14,7 @@ NOTHING = "-"
 ROOMY = 100  # characters from which there is room for the change in percent
 NARROWEST_NAME, WIDEST_NAME = 12, 44
 MOST_DECIMALS = 6
-GAP = "  "
+INDENT = "  "
 
 
 def comparison_table(comparison: Comparison, width: int) -> str:
@@ -24,6 +24,14 @@ def comparison_table(comparison: Comparison, width: int) -> str:
         comparison: what was flown.
         width: [characters] of the terminal.
     """
+    table = _table(comparison, width, gap=2)
+    if max(map(len, table)) > width:
+        table = _table(comparison, width, gap=1)
+    return "\n".join([*table, *_notes(comparison, width)])
+
+
+def _table(comparison: Comparison, width: int, gap: int) -> list[str]:
+    """The lines of the table, with so many spaces between columns."""
     blocks = [(_title(metric), _rows(comparison, metric, width)) for metric in comparison.metrics]
     if required := _required_rows(comparison, width):
         blocks.append(("required, met in", required))
@@ -33,22 +41,22 @@ def comparison_table(comparison: Comparison, width: int) -> str:
         for k in range(columns)
     ]
     widths = [room if any(row[k] for _, rows in blocks for row in rows) else 0 for k, room in enumerate(widths)]
-    taken = sum(room + len(GAP) for room in widths if room)
-    longest = min(max(map(len, comparison.labels)), WIDEST_NAME, width - taken - len(GAP))
+    taken = sum(room + gap for room in widths if room)
+    longest = min(max(map(len, comparison.labels)), WIDEST_NAME, width - taken - len(INDENT))
     first = max(NARROWEST_NAME, longest)
 
     def line(label: str, cells: Sequence[str]) -> str:
-        parts = [f"{GAP}{cell:>{room}}" for cell, room in zip(cells, widths, strict=True) if room]
-        return f"{label:<{first + len(GAP)}}{''.join(parts)}".rstrip()
+        parts = [f"{' ' * gap}{cell:>{room}}" for cell, room in zip(cells, widths, strict=True) if room]
+        return f"{label:<{first + len(INDENT)}}{''.join(parts)}".rstrip()
 
-    lines = [*_top_lines(comparison, widths, first), line("", _headings(comparison, width))]
+    lines = [_top_line(comparison, widths, first, gap), line("", _headings(comparison, width))]
     lines.append("-" * max(map(len, lines)))
     for title, rows in blocks:
         lines.append(title)
         lines += [
-            line(f"{GAP}{shortened(label, first)}", row) for label, row in zip(comparison.labels, rows, strict=True)
+            line(f"{INDENT}{shortened(label, first)}", row) for label, row in zip(comparison.labels, rows, strict=True)
         ]
-    return "\n".join([*lines, *_notes(comparison, width)])
+    return lines
 
 
 def shortened(label: str, longest: int) -> str:
@@ -85,12 +93,11 @@ def _headings(comparison: Comparison, width: int) -> list[str]:
     return ["mean", "95 % interval", many, "mean", *percent, "95 % interval", ""]
 
 
-def _top_lines(comparison: Comparison, widths: Sequence[int], first: int) -> list[str]:
+def _top_line(comparison: Comparison, widths: Sequence[int], first: int, gap: int) -> str:
     """What the right-hand columns are, above them."""
-    before = first + len(GAP) + sum(room + len(GAP) for room in widths[:3] if room)
-    room = sum(room + len(GAP) for room in widths[3:-1]) - len(GAP)
-    text = f"difference to {shortened(comparison.labels[0], max(room - len('difference to '), 6))}"
-    return [" " * (before + len(GAP)) + text.rjust(room)]
+    end = len(INDENT) + first + sum(room + gap for room in widths[:-1] if room)
+    said = "difference to "
+    return f"{said + shortened(comparison.labels[0], min(end - len(said), WIDEST_NAME)):>{end}}"
 
 
 def _title(metric: str) -> str:

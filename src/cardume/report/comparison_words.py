@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cardume.simulation.flight import METRICS
-from cardume.studies.comparing import Comparison
+from cardume.studies.comparing import Comparison, value_of
 from cardume.studies.statistics import is_clear
 
 MOST_TOLD = 6  # arms of which a sentence is made; the table has all
@@ -33,6 +33,10 @@ def _sentences(comparison: Comparison) -> Iterator[str]:
         if len(comparison.arms) - 1 > MOST_TOLD:
             yield f"Of {len(comparison.arms) - 1 - MOST_TOLD} more arms the table tells."
     for arm, label in enumerate(comparison.labels):
+        lost = [run for run in comparison.runs[arm] if not run.failure and np.isnan(value_of(run, "settling_time"))]
+        if lost:
+            which = f"{len(lost)} of {count} missions" if count > 1 else "its mission"
+            yield f"{label} did not settle on its path in {which}: most numbers are missing there."
         if failed := comparison.failures(arm):
             seed, why = failed[0]
             yield f"{label} failed in {len(failed)} of {count} missions; with seed {seed} {why}."
@@ -42,17 +46,17 @@ def _of_chance(comparison: Comparison) -> Iterator[str]:
     """What the spread over the seeds says of the comparison itself."""
     count = len(comparison.seeds)
     table = np.array([comparison.values(metric) for metric in comparison.metrics])  # (metric, arm, seed)
-    if _is_same(table - table[:, :1]):
+    if _is_same(table, table[:, :1]):
         keys = " or ".join(comparison.varied) or "what differs"
         yield f"All arms flew alike: {keys} has no influence on any of these numbers."
     elif count == 1:
         yield "One seed says what happened, not what will: for intervals add --runs 20."
-    elif _is_same(table - table[:, :, :1]):
+    elif _is_same(table, table[:, :, :1]):
         yield "Every seed gave the same: nothing in these missions is random, and one seed is enough."
 
 
-def _is_same(differences: np.ndarray) -> bool:
-    return bool(np.all(np.nan_to_num(differences) == 0.0))
+def _is_same(values: np.ndarray, others: np.ndarray) -> bool:
+    return bool(np.all((values == others) | (np.isnan(values) & np.isnan(others))))
 
 
 def _against_first(comparison: Comparison, arm: int) -> str:

@@ -12,7 +12,6 @@ CONFIDENCE = 0.95
 RESAMPLES = 20_000
 KEY = 20_240_229  # of the resampling: the same numbers give the same intervals
 MOST_AT_ONCE = 4_000_000  # random numbers held at a time
-FEW = 8  # values below which the bootstrap has too little to draw from
 ROUNDING = 1e-12  # of a value: what is smaller comes of the arithmetic
 
 
@@ -26,11 +25,12 @@ class Estimate(NamedTuple):
 
 
 def estimate(values: np.ndarray, confidence: float = CONFIDENCE) -> Estimate:
-    """The mean of a sample, and its interval by the expanded percentile bootstrap.
+    """The mean of a sample, and its interval: each end the outer one of the bootstrap's and Student's.
 
-    Means of samples drawn with replacement lie too close together by sqrt((n - 1) / n) and have no tails
-    of Student's t; the percentiles taken are moved outwards by both: Phi(-sqrt(n / (n - 1)) t). A handful of
-    values, whose resampled means never leave their range, gets Student's interval.
+    The expanded percentile bootstrap follows skew. Means of samples drawn with replacement lie too close together
+    by sqrt((n - 1) / n) and lack the tails of Student's t, so its percentiles are moved outwards by both, to
+    Phi(-sqrt(n / (n - 1)) t). They never leave the range of the sample, though: of a handful of values, or at
+    high confidence, Student's interval is the wider one and covers as often as it says.
 
     Args:
         values: (n,) [any] one per run; those that are no number are left out.
@@ -51,12 +51,10 @@ def estimate(values: np.ndarray, confidence: float = CONFIDENCE) -> Estimate:
         return Estimate(mean, math.nan, math.nan, 1)
     if float(np.ptp(sample)) <= ROUNDING * abs(mean):
         return Estimate(mean, mean, mean, count)
-    if count < FEW:
-        half = student_quantile(0.5 + 0.5 * confidence, count - 1) * float(sample.std(ddof=1)) / math.sqrt(count)
-        return Estimate(mean, mean - half, mean + half, count)
+    half = student_quantile(0.5 + 0.5 * confidence, count - 1) * float(sample.std(ddof=1)) / math.sqrt(count)
     tail = expanded_tail(count, confidence)
     low, high = np.quantile(resampled_means(sample), (tail, 1.0 - tail))
-    return Estimate(mean, float(low), float(high), count)
+    return Estimate(mean, min(float(low), mean - half), max(float(high), mean + half), count)
 
 
 def paired_difference(values: np.ndarray, baseline: np.ndarray, confidence: float = CONFIDENCE) -> Estimate:
