@@ -12,10 +12,22 @@ from scipy.interpolate import RegularGridInterpolator
 
 from cardume.compiler import WIDTH, load, rows_of, store
 from cardume.signals import Noise, Where
-from cardume.world.currents import gridded, pack_grid, uniform, water_at
+from cardume.world.currents import (
+    ekman,
+    gauss_markov,
+    gridded,
+    pack_grid,
+    power_law,
+    sheared,
+    step,
+    tidal,
+    uniform,
+    water_at,
+)
 from cardume.world.currents.grid import LEAST_WEIGHT
 from cardume.world.currents.variation import Variation, vary
 
+LAWS = (uniform, gridded, sheared, power_law, ekman, step, tidal, gauss_markov)
 NO_FIELD = np.zeros(0)
 HERE = Where(3.0, -4.0, 5.0, 6.0, NO_FIELD)
 SILENCE = Noise(0.0, 0.0, 0.0, 0.0)
@@ -243,7 +255,7 @@ def test_python_one_mission_and_lanes_agree_to_the_last_bit() -> None:
 
 
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="compiles the laws")
-@pytest.mark.parametrize("law", [uniform, gridded], ids=lambda law: law.name)
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_the_laws_compile_for_one_mission_and_for_lanes(law) -> None:
     assert law.handle() > 0
     assert law.handle(lanes=True) > 0

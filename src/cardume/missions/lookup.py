@@ -6,10 +6,24 @@ from dataclasses import MISSING
 
 from cardume.errors import LawError
 from cardume.missions.catalog import Context, Law, Parameter
-from cardume.missions.schema import HUGE, Bounds, Field, File, Kind, Laws, Quantity, Text, fields_of, records_of
+from cardume.missions.schema import (
+    HUGE,
+    Bounds,
+    Field,
+    File,
+    Group,
+    Kind,
+    Laws,
+    ListOf,
+    Quantity,
+    Text,
+    fields_of,
+    records_of,
+)
 from cardume.missions.tree import Node
 from cardume.missions.varying import is_varying
 from cardume.missions.vehicle import LawChoice
+from cardume.missions.water import CurrentPoint
 from cardume.missions.wording import unknown
 from cardume.units import printable, show_text
 
@@ -20,8 +34,11 @@ TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
         Field("north", Text(fixed=True), None, None, False, "its variable for the velocity to the north"),
         Field("start_time", Text(fixed=True), None, None, False, "date of the mission's start, ISO 8601, UTC"),
     ),
+    ("current", "sheared"): (
+        Field("profile", ListOf(Group(CurrentPoint), fixed=True), MISSING, None, False, "velocities by depth"),
+    ),
 }
-"""What laws take beside numbers: texts, which compiled code does not see."""
+"""What laws take beside numbers: texts and lists, which compiled code does not see."""
 
 
 class Chosen:

@@ -1,7 +1,8 @@
 """From a mission, as written, to a plan, as the engine takes it."""
 
 import inspect
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -17,6 +18,7 @@ from cardume.missions.geodesy import GeoPoint
 from cardume.missions.mission import Mission
 from cardume.missions.route import ArcPath, CirclePath, FilePath, LawnmowerPath, LemniscatePath, LinePath
 from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
+from cardume.missions.water import CurrentPoint
 from cardume.onboard.mind import Setup
 from cardume.paths.arc import arc
 from cardume.paths.circle import Center, circle
@@ -32,12 +34,14 @@ from cardume.paths.table import PathPlace, start_at
 from cardume.signals import Command, Reference, VesselState, Water
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
 from cardume.simulation.score import Rules
+from cardume.world.currents import ProfilePoint, pack_profile
 
 IDEAL_SENSORS = ("gnss", "ahrs", "depth", "dvl", "thruster_speed")
 ERRORS = ("sigma", "bias", "deviation", "misalignment", "latency")  # parts of the names of parameters that are errors
 UNLIMITED = 1e9  # [m]
 TRIM_STEP = 0.05  # [s]
 TEXTS = ("file", "east", "north", "start_time")  # what `gridded` takes beside numbers
+PROFILE = "profile"  # and `sheared`
 
 
 @dataclass(frozen=True)
@@ -146,6 +150,9 @@ def _current(
     chosen = mission.current
     if chosen.name == "none":
         return Choice(laws_of("current")["uniform"], {"speed": 0.0}), np.zeros(1)
+    if chosen.name == "sheared":
+        numbers = {key: value for key, value in chosen.parameters.items() if key != PROFILE}
+        return Choice(laws_of("current")["sheared"], numbers), _profile(chosen.parameters[PROFILE])
     if chosen.name != "gridded":
         return _choice(chosen, catalog), np.zeros(1)
     if origin is None:
@@ -171,6 +178,16 @@ def _current(
     if uncovered:
         raise mission.error("current.file", uncovered)
     return Choice(laws_of("current")["gridded"], numbers), rows
+
+
+def _profile(points: Sequence[CurrentPoint]) -> np.ndarray:
+    """The table of a sheared current."""
+    return pack_profile(
+        [
+            ProfilePoint(p.depth, p.speed * math.cos(p.towards), p.speed * math.sin(p.towards))
+            for p in points
+        ]
+    )
 
 
 def _choice(chosen: LawChoice, catalog: Catalog) -> Choice:

@@ -21,7 +21,8 @@ def check_rules(mission: Mission) -> None:
     Raises:
         MissionError: with every rule that is broken, where the value stands.
     """
-    found = [*_step_rules(mission), *_period_rules(mission), *_path_rules(mission), *_fleet_rules(mission)]
+    rules = (_step_rules, _period_rules, _path_rules, _current_rules, _fleet_rules)
+    found = [broken for rule in rules for broken in rule(mission)]
     if found:
         raise MissionError(Problem(mission.where(key), message) for key, message in found)
 
@@ -67,6 +68,15 @@ def _path_rules(mission: Mission) -> Iterator[tuple[str, str]]:
     if isinstance(path, FilePath) or (pieces and all(getattr(piece, "speed", 0.0) is not None for piece in pieces)):
         return
     yield "formation.speed", "missing; v_L, along the reference path; must be a speed, as '0.5 m/s'"
+
+
+def _current_rules(mission: Mission) -> Iterator[tuple[str, str]]:
+    """The points of a profile go down."""
+    points = mission.current.parameters.get("profile", ()) if isinstance(mission.current, LawChoice) else ()
+    for k in range(1, len(points)):
+        if not points[k].depth > points[k - 1].depth:
+            given, above = (show_quantity(p.depth, "m", digits=12) for p in (points[k], points[k - 1]))
+            yield f"current.profile.{k}.depth", f"given {given}; must be below the point before it, {above}"
 
 
 def _fleet_rules(mission: Mission) -> Iterator[tuple[str, str]]:

@@ -18,6 +18,7 @@ from cardume.missions.checks.finding import (
     worst,
 )
 from cardume.missions.checks.scene import Craft, Scene
+from cardume.missions.checks.stations import fastest_after, spread_of
 
 STEEPEST = {"crab": 0.98, "arcsine": 0.99}  # of a right angle's sine: where these laws saturate
 OFFSET_SHOWN = 0.05  # [m]
@@ -113,10 +114,20 @@ def _remedy(scene: Scene, craft: Craft) -> tuple[str, str]:
         speed = smallest(lambda v: surplus(craft, 0.99 * craft.path_speed(profile=v)) > 0.0, 0.0, float(most))
         if math.isfinite(speed):
             return "formation.speed", at_least("formation.speed", speed, "m/s")
-    if scene.sets_current:
-        share = largest(lambda s: surplus(craft, 0.95 * craft.path_speed(), s) > 0.0, 0.0, 1.0)
-        return "current.speed", at_most("current.speed", share * scene.mission.current.parameters["speed"], "m/s")
+    if scene.current_factor:
+        return weaker(scene, largest(lambda s: surplus(craft, 0.95 * craft.path_speed(), s) > 0.0, 0.0, 1.0))
     return ("current.file" if scene.mission.current.name == "gridded" else "current"), ""
+
+
+def weaker(scene: Scene, share: float) -> tuple[str, str]:
+    """The key that sets how fast the current is, and the setting that makes it weaker.
+
+    Args:
+        scene: whose current has a factor.
+        share: [-] of its speed that would pass.
+    """
+    key, unit = f"current.{scene.current_factor}", "m/s" if scene.current_factor == "speed" else ""
+    return key, at_most(key, share * scene.mission.current.parameters[scene.current_factor], unit)
 
 
 def _doubt(scene: Scene, craft: Craft) -> Finding:
@@ -133,11 +144,11 @@ def _doubt(scene: Scene, craft: Craft) -> Finding:
     if slow and math.isfinite(still):
         return Finding("warning", key, message, at_most(key, 0.99 * still, "m/s"))
     if craft.stations.doubt:
-        sigma = scene.mission.current.parameters["variation_sigma"]
+        name, sigma = spread_of(craft.law("current"))
         share = largest(
             lambda s: surplus(craft, craft.path_speed(-slow), doubt=s * craft.stations.doubt) > 0.0, 0.0, 1.0
         )
-        key = "current.variation_sigma"
+        key = f"current.{name}"
         return Finding("warning", key, message, at_most(key, 0.99 * share * sigma, "m/s"))
     return Finding("warning", key, message)
 
@@ -198,7 +209,8 @@ def check_end(scene: Scene) -> Iterator[Finding]:
         arrives = stations.time[-1] < scene.mission.duration and craft.plan.setup.stays > 0.5
         if not (knows(craft) and arrives):
             continue
-        speed, current = float(available_speed(craft, craft.path_speed())[-1]), float(stations.current_speed[-1])
+        speed = float(available_speed(craft, craft.path_speed())[-1])
+        current = fastest_after(stations, scene.plan, craft.law("current"), craft.plan.setup.depth)
         if current + stations.doubt >= speed > 0.0:
             key = scene.key(craft, "end")
             message = (

@@ -18,6 +18,7 @@ from cardume.simulation.plan import Choice, Plan, VehiclePlan
 # How a vehicle meets the current: it holds its course and its speed over ground; its course alone;
 # neither.
 Meeting = Literal["course and speed", "course", "nothing"]
+FACTORS = {"uniform": "speed", "gauss_markov": "speed", "power_law": "speed", "ekman": "speed", "sheared": "scale"}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -131,9 +132,9 @@ class Scene:
         return speed is not None and all(np.all(craft.stations.speed == speed) for craft in self.crafts)
 
     @property
-    def sets_current(self) -> bool:
-        """Whether the current is one number that could be another."""
-        return self.mission.current.name == "uniform"
+    def current_factor(self) -> str:
+        """The parameter in proportion to which the whole mean current is, so that another value makes it weaker; or empty."""
+        return FACTORS.get(self.mission.current.name, "")
 
 
 def make_scene(mission: Mission, planned: Planned) -> Scene:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cardume.missions.checks.current import FASTEST, knows, surplus
+from cardume.missions.checks.current import FASTEST, knows, surplus, weaker
 from cardume.missions.checks.finding import Finding, Ranked, at_least, at_most, largest, show, smallest, worst
 from cardume.missions.checks.scene import Craft, Scene
 
@@ -168,7 +168,7 @@ def _outrun(scene: Scene, craft: Craft, message: str) -> Finding:
     assert craft.limits is not None
     share = float((craft.path_speed() / np.maximum(craft.stations.along, 1e-9)).min()) * MARGIN
     needed = float(((craft.stations.along + craft.limits.least) / craft.stations.stretch).max()) / MARGIN
-    if scene.sets_current and not (scene.sets_speed and fastest(craft, profile=needed) < craft.limits.most):
-        speed = share * scene.mission.current.parameters["speed"]
-        return Finding("warning", "current.speed", message, at_most("current.speed", speed, "m/s"))
+    if scene.current_factor and not (scene.sets_speed and fastest(craft, profile=needed) < craft.limits.most):
+        key, suggestion = weaker(scene, share)
+        return Finding("warning", key, message, suggestion)
     return _about_speed(scene, message, at_least(SPEED, needed, "m/s"))

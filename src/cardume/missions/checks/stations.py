@@ -2,17 +2,20 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
 from cardume.paths import table
+from cardume.signals import Noise, Water, Where
 from cardume.simulation.plan import Choice, Plan
-from cardume.world.currents import water_at
 
 FINEST_TURN = math.radians(5.0)
 LONGEST_STEP = 25.0  # [m]
 MOST_IN_SEGMENT = 720  # ten laps of a circle
-MOST_LOOKED_UP = 300  # places in a gridded current
+MOST_LOOKED_UP = 300  # places in a current
+MOST_TIMES = 50  # at the end of the path
+SILENCE = Noise(0.0, 0.0, 0.0, 0.0)
 SIGMAS = 2.0  # of a current's variation that a mission is to withstand
 
 
@@ -108,27 +111,59 @@ def _along_segment(row: np.ndarray, length: float, time: float, speed: float) ->
 def in_current(stations: Stations, plan: Plan, water: Choice, depth: float) -> Stations | None:
     """The stations with the mission's current; None where the current is a user's own law.
 
+    The law itself is asked, without noise: what it then gives is the mean, at the place, depth and time of a station.
+
     Args:
         stations: in still water.
-        plan: holds the table of a gridded current.
+        plan: holds the table of a gridded or sheared current.
         water: the law of the current.
         depth: [m] of the vehicle.
     """
-    if water.law.name == "uniform":
-        towards, speed = water.value("towards"), water.value("speed")
-        north = np.full(len(stations.course), speed * math.cos(towards))
-        east = np.full(len(stations.course), speed * math.sin(towards))
-    elif water.law.name == "gridded":
-        stations = _thinned(stations)
-        places = zip(stations.north, stations.east, stations.time, strict=True)
-        north, east = np.array([water_at(plan.field, n, e, depth, t) for n, e, t in places], float).T
-    else:
+    if not water.law.is_builtin:
         return None
+    looked_up = _thinned(stations)
+    places = zip(looked_up.north, looked_up.east, looked_up.time, strict=True)
+    flows = [_mean(water, Where(n, e, depth, t, plan.field), plan.tick) for n, e, t in places]
+    if water.law.name == "gridded":
+        stations = looked_up
+    north, east = (np.interp(stations.time, looked_up.time, part) for part in np.array(flows, float).T)
     sine, cosine = np.sin(stations.course), np.cos(stations.course)
     along, across = north * cosine + east * sine, east * cosine - north * sine
-    doubt = SIGMAS * water.value("variation_sigma")
-    known = replace(stations, along=np.nan_to_num(along), across=np.nan_to_num(across), doubt=doubt)
-    return known
+    doubt = SIGMAS * spread_of(water)[1]
+    return replace(stations, along=np.nan_to_num(along), across=np.nan_to_num(across), doubt=doubt)
+
+
+def _mean(water: Choice, place: Where, tick: float) -> Water:
+    """What a law of the current gives when nothing varies."""
+    law = water.law
+    given = {"place": place, "noise": SILENCE, "dt": tick, **{p.name: water.value(p.name) for p in law.parameters}}
+    if law.memory_type is None:
+        return cast(Water, law.function(**given))
+    return cast(Water, law.function(**given, memory=law.memory_type())[0])
+
+
+def spread_of(water: Choice) -> tuple[str, float]:
+    """The parameter that says how much a current varies about its mean, and its value [m/s]; 0 where it does not.
+
+    Args:
+        water: one of our laws of the current.
+    """
+    sigmas = [p.name for p in water.law.parameters if "sigma" in p.name]
+    return max(((name, water.value(name)) for name in sigmas), key=lambda pair: pair[1], default=("", 0.0))
+
+
+def fastest_after(stations: Stations, plan: Plan, water: Choice, depth: float) -> float:
+    """The fastest mean current [m/s] at the last station, from the time of arrival to the end of the mission.
+
+    Args:
+        stations: of the vehicle.
+        plan: of the mission.
+        water: one of our laws of the current.
+        depth: [m] of the vehicle.
+    """
+    times = np.linspace(stations.time[-1], max(plan.duration, stations.time[-1]), MOST_TIMES)
+    flows = [_mean(water, Where(stations.north[-1], stations.east[-1], depth, t, plan.field), plan.tick) for t in times]
+    return float(np.nan_to_num([math.hypot(*flow) for flow in flows]).max())
 
 
 def _thinned(stations: Stations) -> Stations:

@@ -6,7 +6,7 @@ from cardume.compiler import compiled, some
 from cardume.maths.gauss_markov import gauss_markov
 from cardume.signals import Noise
 
-__all__ = ["Variation", "vary"]
+__all__ = ["Variation", "vary", "vary_axes"]
 
 
 class Variation(NamedTuple):
@@ -33,8 +33,27 @@ def vary(memory: Variation, noise: Noise, dt: float, sigma: float, time_constant
     Returns:
         The variation now.
     """
-    north, east = memory.north, memory.east
-    if some(sigma > 0.0):
-        north = gauss_markov(north, memory.started, dt, noise.a, sigma, time_constant)
-        east = gauss_markov(east, memory.started, dt, noise.b, sigma, time_constant)
-    return Variation(north, east, 1.0)
+    return vary_axes(memory, noise, dt, (sigma, sigma), time_constant)
+
+
+@compiled
+def vary_axes(
+    memory: Variation, noise: Noise, dt: float, sigmas: tuple[float, float], time_constant: float
+) -> Variation:
+    """The same with a standard deviation for each of two axes, which need not be north and east.
+
+    Args:
+        memory: the variation of the tick before.
+        noise: a and b drive the first and the second axis.
+        dt: [s] tick.
+        sigmas: [m/s] standard deviations; 0 gives exactly no variation.
+        time_constant: [s] after which the autocorrelation has fallen to 1 / e.
+
+    Returns:
+        The variation now, the first axis where `north` is and the second where `east` is.
+    """
+    first, second = memory.north, memory.east
+    if some((sigmas[0] > 0.0) | (sigmas[1] > 0.0)):
+        first = gauss_markov(first, memory.started, dt, noise.a, sigmas[0], time_constant)
+        second = gauss_markov(second, memory.started, dt, noise.b, sigmas[1], time_constant)
+    return Variation(first, second, 1.0)
