@@ -213,6 +213,7 @@ class Law:
         self.doc = inspect.getdoc(function) or ""
         self.memory_type: Any = None
         self.parameters: tuple[Parameter, ...] = ()
+        self.announced: dict[str, dict[str, float]] = {}  # by family: what its laws' defaults are beside this law
         self._given: list[str] = []
         self._read_signature()
         self.__name__, self.__qualname__, self.__doc__ = self.name, function.__qualname__, function.__doc__

@@ -134,7 +134,9 @@ def seen(current: str) -> np.ndarray:
 
 
 def test_a_profile_is_linear_between_its_points_and_constant_beyond() -> None:
-    points = "{depth: 2, speed: 0.3}, {depth: 7, speed: 0.2, towards: 90 deg}, {depth: 20, speed: 0.1, towards: 180 deg}"
+    points = (
+        "{depth: 2, speed: 0.3}, {depth: 7, speed: 0.2, towards: 90 deg}, {depth: 20, speed: 0.1, towards: 180 deg}"
+    )
     north = np.interp(DEPTHS, [2.0, 7.0, 20.0], [0.3, 0.0, -0.1])
     east = np.interp(DEPTHS, [2.0, 7.0, 20.0], [0.0, 0.2, 0.0])
     assert seen(f"type: sheared, profile: [{points}]") == pytest.approx(np.transpose([north, east]), abs=1e-15)

@@ -13,7 +13,7 @@ from cardume.onboard import compensation, control, coordination, guidance, messa
 from cardume.onboard.estimation import current, neighbors, position, speed
 from cardume.paths import projection, virtual_target
 from cardume.simulation.flight import METRICS
-from cardume.vehicles import kinematic, medusa
+from cardume.vehicles import kinematic, medusa, medusa_2013
 from cardume.world import acoustics, currents, sensors
 
 # Importing a room registers its laws.
@@ -27,6 +27,7 @@ ROOMS = (
     guidance,
     kinematic,
     medusa,
+    medusa_2013,
     messaging,
     neighbors,
     position,

@@ -81,3 +81,4 @@ class Context:
     catalog: Catalog
     directory: Path
     fleet: tuple[str, ...] = ()
+    announced: Mapping[str, Mapping[str, float]] = field(default_factory=dict)

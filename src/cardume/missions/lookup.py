@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import MISSING
+from typing import Any
 
 from cardume.errors import LawError
 from cardume.missions.catalog import Context, Law, Parameter
@@ -44,9 +46,9 @@ TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
 class Chosen:
     """The law that a section names, as the fields it brings."""
 
-    def __init__(self, kind: Laws, name: str, law: Law | None) -> None:
+    def __init__(self, kind: Laws, name: str, law: Law | None, announced: Mapping[str, float]) -> None:
         self.kind, self.name = kind, name
-        self.fields = () if law is None else law_fields(law)
+        self.fields = () if law is None else law_fields(law, announced)
 
     @property
     def keys(self) -> set[str]:
@@ -61,11 +63,12 @@ def choose_law(kind: Laws, entries: dict[str, Node], section: Node, context: Con
         MissionError: no such law, or the user's law cannot be had.
     """
     named, builtin = entries.get(kind.selector), context.catalog.laws_of(kind.family)
+    announced = context.announced.get(kind.family, {})
     if named is None:
         name = kind.default if kind.default in {*builtin, *kind.words} else next(iter(builtin), None)
         if name is None:
             raise section.error(f"there is no law of the family {kind.family} to choose")
-        return Chosen(kind, name, builtin.get(name))
+        return Chosen(kind, name, builtin.get(name), announced)
     if is_varying(named):
         raise named.error(
             f"a varying law carries its parameters: write the whole section as"
@@ -73,21 +76,56 @@ def choose_law(kind: Laws, entries: dict[str, Node], section: Node, context: Con
         )
     name = named.value
     if isinstance(name, str) and ":" in name:
-        return Chosen(kind, name, _user_law(kind, name, named, context))
+        return Chosen(kind, name, _user_law(kind, name, named, context), announced)
     if isinstance(name, str) and (name in builtin or isinstance(kind.words.get(name), LawChoice)):
-        return Chosen(kind, name, builtin.get(name))
+        return Chosen(kind, name, builtin.get(name), announced)
     valid = [*builtin, *(word for word in kind.words if word not in builtin)]
     message = unknown(f"there is no {kind.family} law {named.given()}", str(name), valid)
     raise named.error(f"{message}, or your own law as module:function")
 
 
-def law_fields(law: Law) -> tuple[Field, ...]:
-    """A law's parameters, as fields of its section."""
+def law_fields(law: Law, announced: Mapping[str, float] | None = None) -> tuple[Field, ...]:
+    """A law's parameters, as fields of its section.
+
+    Args:
+        law: of any family.
+        announced: values that some of them have by default beside another law.
+    """
+    known = announced or {}
     numbers = tuple(
-        Field(parameter.name, _quantity(parameter), float(parameter.default), None, False, "")
+        Field(
+            parameter.name, _quantity(parameter), float(known.get(parameter.name, parameter.default)), None, False, ""
+        )
         for parameter in law.parameters
     )
     return TEXT_PARAMETERS.get((law.family, law.name), ()) + numbers
+
+
+def announced_by(choice: Any, node: Node, context: Context) -> Mapping[str, Mapping[str, float]]:
+    """What a law that was chosen announces of others' parameters.
+
+    Args:
+        choice: the law; or several, of which one is drawn.
+        node: where it is chosen.
+        context: of the mission.
+
+    Raises:
+        MissionError: several laws that announce different numbers.
+    """
+    options = getattr(choice, "options", (choice,))
+    laws = [_law_named(option.family, option.name, context) for option in options]
+    found = [getattr(law, "announced", {}) for law in laws]
+    if any(numbers != found[0] for numbers in found):
+        names = " and ".join(option.name for option in options)
+        raise node.error(
+            f"{names} want different autopilots and speed readers, so they cannot vary in one mission;"
+            f" fly it once with each, as --set {node.position.key}={options[0].name}"
+        )
+    return found[0]
+
+
+def _law_named(family: str, name: str, context: Context) -> Law | None:
+    return context.catalog.resolve_law(family, name) if ":" in name else context.catalog.laws_of(family).get(name)
 
 
 def inlined_laws(kind: Kind) -> list[Laws]:

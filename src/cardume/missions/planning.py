@@ -183,10 +183,7 @@ def _current(
 def _profile(points: Sequence[CurrentPoint]) -> np.ndarray:
     """The table of a sheared current."""
     return pack_profile(
-        [
-            ProfilePoint(p.depth, p.speed * math.cos(p.towards), p.speed * math.sin(p.towards))
-            for p in points
-        ]
+        [ProfilePoint(p.depth, p.speed * math.cos(p.towards), p.speed * math.sin(p.towards)) for p in points]
     )
 
 
@@ -262,10 +259,17 @@ def _reader(vehicle: Vehicle, sensors: Sensors, catalog: Catalog) -> Choice:
     if sensors.thruster_speed is not None:
         chosen = _choice(sensors.thruster_speed.reader, catalog)
     else:
-        chosen = Choice(laws_of("speed")["thruster_calibration"])
+        chosen = _told_by(vehicle.model, laws_of("speed")["thruster_calibration"], catalog)
     if vehicle.model.name == "kinematic" and chosen.law.is_builtin:
         return Choice(laws_of("speed")["proportional"], {"scale": chosen.value("scale")})
     return chosen
+
+
+def _told_by(model: LawChoice, law: Law, catalog: Catalog) -> Choice:
+    """A law with the defaults that a model announces for it."""
+    told = _choice(model, catalog).law.announced.get(law.family, {})
+    names = {parameter.name for parameter in law.parameters}
+    return Choice(law, {name: value for name, value in told.items() if name in names})
 
 
 def _exact(law: Law, tick: float) -> Choice:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
-from dataclasses import MISSING
+from dataclasses import MISSING, replace
 from functools import singledispatch
 from typing import Any
 
 from cardume.errors import Collector, MissionError, Position, Problem
 from cardume.missions.catalog import Context
-from cardume.missions.lookup import Chosen, choose_law, inlined_laws
+from cardume.missions.lookup import Chosen, announced_by, choose_law, inlined_laws
 from cardume.missions.schema import (
     Field,
     Forms,
@@ -187,6 +187,9 @@ def read_record(
                     values[field.key] = _choice(chosen[field.key], _owned(field.key, chosen, entries), section, context)
                 else:
                     values[field.key] = _field(field, entries, section, context, values)
+                    if isinstance(field.kind, Laws) and field.kind.announces:
+                        told = announced_by(values[field.key], entries.get(field.key, section), context)
+                        context = replace(context, announced=told)
     collector.finish()
     return record(**values)
 

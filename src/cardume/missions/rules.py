@@ -72,7 +72,8 @@ def _path_rules(mission: Mission) -> Iterator[tuple[str, str]]:
 
 def _current_rules(mission: Mission) -> Iterator[tuple[str, str]]:
     """The points of a profile go down."""
-    points = mission.current.parameters.get("profile", ()) if isinstance(mission.current, LawChoice) else ()
+    current: object = mission.current
+    points = current.parameters.get("profile", ()) if isinstance(current, LawChoice) else ()
     for k in range(1, len(points)):
         if not points[k].depth > points[k - 1].depth:
             given, above = (show_quantity(p.depth, "m", digits=12) for p in (points[k], points[k - 1]))

@@ -104,7 +104,8 @@ class Laws(Kind):
     """A law of a family with its parameters; `selector` is the key that names the law.
 
     An inlined choice has no section of its own: its keys stand among those of its record.
-    `default` None means the family's first law; `words` are texts that stand for a whole record.
+    `default` None means the family's first law; `words` are texts that stand for a whole record. A law that `announces`
+    sets what the parameters of others, read after it, are when they are left out.
     """
 
     family: str
@@ -112,6 +113,7 @@ class Laws(Kind):
     default: str | None = None
     inlined: bool = False
     words: Mapping[str, Any] = dataclasses.field(default_factory=dict, hash=False)
+    announces: bool = False
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

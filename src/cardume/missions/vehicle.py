@@ -141,7 +141,7 @@ class Vehicle:
     """One vehicle of the fleet; every section resolved, whether it was given here or for the fleet."""
 
     name: Annotated[str, Name(fixed=True), "unique in the fleet"]
-    model: Annotated[LawChoice, Laws("model", default="medusa"), Shared(), "how it moves"]
+    model: Annotated[LawChoice, Laws("model", default="medusa", announces=True), Shared(), "how it moves"]
     depth: Annotated[float, Quantity("m", Bounds(0.0, 12_000.0)), "to keep"] = 0.0
     offset: Annotated[Offset, Group(Offset), "its place in the formation"] = Offset()
     start: Annotated[

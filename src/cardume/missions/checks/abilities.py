@@ -16,6 +16,9 @@ POLES = (0.84, 1.03, 0.78, 0.61, 0.52)  # [1/s]
 HEADING_GAINS = ("heading_gain", "yaw_rate_gain", "sway_share", "turn_bandwidth")
 
 
+MEDUSAS = ("medusa", "medusa_2013")
+
+
 class SpeedLimits(NamedTuple):
     """Steady speeds through the water that a vehicle can keep."""
 
@@ -34,7 +37,7 @@ def speed_limits(vehicle: VehiclePlan) -> SpeedLimits | None:
     model = vehicle.laws["model"]
     if model.law.name == "kinematic":
         return SpeedLimits(0.0, math.inf)
-    if model.law.name != "medusa":
+    if model.law.name not in MEDUSAS:
         return None
     thrust = NUM_HORIZONTAL_THRUSTERS * model.value("thrust_coefficient") * model.value("max_shaft_speed") ** 2
     slowest = model.value("dead_zone") ** 2 * thrust
@@ -50,7 +53,7 @@ def steady_speed(model: Choice, thrust: float) -> float:
     u = 2 X / (d + sqrt(d^2 + 4 D X))
 
     Args:
-        model: `medusa`.
+        model: one of MEDUSAS.
         thrust: [N] X >= 0.
     """
     linear, quadratic = model.value("surge_drag"), model.value("surge_drag_quadratic")

@@ -133,7 +133,7 @@ class Scene:
 
     @property
     def current_factor(self) -> str:
-        """The parameter in proportion to which the whole mean current is, so that another value makes it weaker; or empty."""
+        """The parameter in proportion to which the whole mean current is; empty where there is none."""
         return FACTORS.get(self.mission.current.name, "")
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from cardume.errors import MissionError
+from cardume.missions.checks.abilities import MEDUSAS
 from cardume.missions.checks.finding import Finding, Ranked, setting, setting_word, show, worst
 from cardume.missions.checks.fixes import has_gnss
 from cardume.missions.checks.scene import Craft, Scene
@@ -36,7 +37,7 @@ def check_senses(scene: Scene) -> Iterator[Finding]:
                 " speed, dead reckoning and current are all wrong",
                 with_sensor(craft, "thruster_speed"),
             )
-        is_diver = laws["model"].law.name == "medusa" and craft.plan.setup.depth > 0.0
+        is_diver = laws["model"].law.name in MEDUSAS and craft.plan.setup.depth > 0.0
         if is_diver and "depth" not in laws:
             yield Finding(
                 "warning",

@@ -6,6 +6,7 @@ from typing import cast
 
 import numpy as np
 
+from cardume.compiler import SharedRows
 from cardume.paths import table
 from cardume.signals import Noise, Water, Where
 from cardume.simulation.plan import Choice, Plan
@@ -123,7 +124,7 @@ def in_current(stations: Stations, plan: Plan, water: Choice, depth: float) -> S
         return None
     looked_up = _thinned(stations)
     places = zip(looked_up.north, looked_up.east, looked_up.time, strict=True)
-    flows = [_mean(water, Where(n, e, depth, t, plan.field), plan.tick) for n, e, t in places]
+    flows = [_mean(water, plan, (n, e, depth, t)) for n, e, t in places]
     if water.law.name == "gridded":
         stations = looked_up
     north, east = (np.interp(stations.time, looked_up.time, part) for part in np.array(flows, float).T)
@@ -133,10 +134,10 @@ def in_current(stations: Stations, plan: Plan, water: Choice, depth: float) -> S
     return replace(stations, along=np.nan_to_num(along), across=np.nan_to_num(across), doubt=doubt)
 
 
-def _mean(water: Choice, place: Where, tick: float) -> Water:
-    """What a law of the current gives when nothing varies."""
-    law = water.law
-    given = {"place": place, "noise": SILENCE, "dt": tick, **{p.name: water.value(p.name) for p in law.parameters}}
+def _mean(water: Choice, plan: Plan, where: tuple[float, float, float, float]) -> Water:
+    """What a law of the current gives when nothing varies, by north, east, depth [m] and time [s]."""
+    law, place = water.law, Where(*where, cast(SharedRows, plan.field))
+    given = {"place": place, "noise": SILENCE, "dt": plan.tick, **{p.name: water.value(p.name) for p in law.parameters}}
     if law.memory_type is None:
         return cast(Water, law.function(**given))
     return cast(Water, law.function(**given, memory=law.memory_type())[0])
@@ -162,7 +163,7 @@ def fastest_after(stations: Stations, plan: Plan, water: Choice, depth: float) -
         depth: [m] of the vehicle.
     """
     times = np.linspace(stations.time[-1], max(plan.duration, stations.time[-1]), MOST_TIMES)
-    flows = [_mean(water, Where(stations.north[-1], stations.east[-1], depth, t, plan.field), plan.tick) for t in times]
+    flows = [_mean(water, plan, (stations.north[-1], stations.east[-1], depth, t)) for t in times]
     return float(np.nan_to_num([math.hypot(*flow) for flow in flows]).max())
 
 

@@ -24,8 +24,8 @@ def ekman(
 
     V_c = speed exp(-z / D) (cos(b + turn z / D), sin(b + turn z / D)) + x(t),   D = sqrt(2 K / f)
 
-    It solves K V'' = f k x V, k upwards, f the Coriolis parameter and K the eddy viscosity, for turn = 1 rad (northern hemisphere)
-    and -1 rad (southern); its surface current flows 45 deg to the right, or left, of the wind.
+    It solves K V'' = f k x V, k upwards, f the Coriolis parameter and K the eddy viscosity, for turn = 1 rad (northern
+    hemisphere) and -1 rad (southern); its surface current flows 45 deg to the right, or left, of the wind.
 
     Args:
         place: its depth z.

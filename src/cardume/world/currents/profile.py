@@ -1,7 +1,7 @@
 """A current given at a few depths, as a flat table that compiled code reads.
 
-The table holds the number of points, then for each of them its depth, one over the distance to the next one, and how much
-the velocity changes from the one before it (of the first, the velocity itself).
+The table holds the number of points, then for each of them its depth, one over the distance to the next one, and how
+much the velocity changes from the one before it (of the first, the velocity itself).
 """
 
 from collections.abc import Sequence
