@@ -37,7 +37,7 @@ def tidal(
         dt: [s] tick.
         speed: [m/s] v, the largest of the tide; with phase 0 the mission starts with it.
         towards: [rad] b, where it flows to then, clockwise from north; half a period later the other way.
-        across_speed: [m/s] m, when it turns; > 0 turns clockwise seen from above, < 0 the other way, 0 to and fro.
+        across_speed: [m/s] m, when it turns; > 0 turns clockwise seen from above, < 0 the other way, 0 there and back.
         period: [s] T; the default is the principal lunar tide.
         phase: [rad] of the tide when the mission starts; a quarter turn starts with the slack.
         mean_speed: [m/s] of the residual current V_0.
