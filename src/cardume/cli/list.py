@@ -27,12 +27,12 @@ KEYS = {
 
 
 @click.command("list")
-@click.argument("what", required=False, metavar="[FAMILY|missions|metrics]")
+@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|formats]")
 @allow_code_option
 @quiet_option
 @json_option
 def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
-    """List the families of laws, the laws of FAMILY, the built-in missions, or the metrics."""
+    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, or the path file formats."""
     del allow_code  # taken everywhere, though only ours are listed
     if what is None:
         found = _families()
@@ -40,6 +40,8 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         found = _missions()
     elif what == "metrics":
         found = _metrics()
+    elif what == "formats":
+        found = _formats()
     else:
         found = _laws(what)
     if as_json:
@@ -51,7 +53,7 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         for entry in found:
             _say(entry)
         if what is None:
-            click.echo("\ncardume list FAMILY, cardume list missions, cardume list metrics say more.")
+            click.echo("\ncardume list FAMILY, list missions, list metrics, list formats say more.")
     return 0
 
 
@@ -77,7 +79,7 @@ def _about(law: Any) -> str:
 def _laws(family: str) -> list[dict[str, Any]]:
     families = _every_law()
     if family not in families:
-        names = [*families, "missions", "metrics"]
+        names = [*families, "missions", "metrics", "formats"]
         hint = nearest(family, names) or "."
         raise click.UsageError(f"There is no family '{family}'{hint} There are {', '.join(names)}")
     return [describe(law) for law in families[family].values()]
@@ -130,6 +132,15 @@ def _metrics() -> list[dict[str, Any]]:
     ]
 
 
+def _formats() -> list[dict[str, Any]]:
+    from cardume.missions.formats.content import FORMATS
+
+    return [
+        {"name": name, "summary": f"{known.title}: {known.keeps}", "suffixes": list(known.suffixes)}
+        for name, known in FORMATS.items()
+    ]
+
+
 def _say(entry: Mapping[str, Any]) -> None:
     width = min(shutil.get_terminal_size().columns, 100)
     unit = f" [{entry['unit']}]" if entry.get("unit") else ""
@@ -142,6 +153,8 @@ def _say(entry: Mapping[str, Any]) -> None:
         click.echo(f"    {_one_line(parameter)}")
     if entry.get("source"):
         click.echo(_indented(f"Source: {entry['source']}", width))
+    if "suffixes" in entry:
+        click.echo(f"    {', '.join(entry['suffixes'])}")
     if "laws" in entry:
         click.echo(_indented(f"{entry['key']}: {', '.join(entry['laws'])}", width))
 

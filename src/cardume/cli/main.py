@@ -19,6 +19,7 @@ import click
 
 from cardume.cli.check import check
 from cardume.cli.compare import compare
+from cardume.cli.convert import convert
 from cardume.cli.list import list_
 from cardume.cli.new import new
 from cardume.cli.report import report
@@ -68,7 +69,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, compare, report, list_, new):
+for _command in (run, check, compare, report, list_, new, convert):
     cli.add_command(_command)
 
 

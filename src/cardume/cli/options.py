@@ -58,3 +58,16 @@ def find_mission(
 
     mission = open_mission(given, overrides=list(overrides), seed=seed, allow_code=list(allow_code))
     return mission if mission.is_fixed else draw(mission, mission.seed)
+
+
+def warn_of_path_file(mission: "Mission") -> None:
+    """Say on stderr what of a mission's path file is not flown.
+
+    Args:
+        mission: every value of it fixed.
+    """
+    from cardume.missions.opening import notes_of
+
+    for note in notes_of(mission):
+        click.secho("warning: ", fg="yellow", bold=True, nl=False, err=True)
+        click.echo(note, err=True)

@@ -17,6 +17,7 @@ from cardume.cli.options import (
     quiet_option,
     seed_option,
     set_option,
+    warn_of_path_file,
 )
 from cardume.cli.progress import Progress
 from cardume.cli.stopping import Stopped, Stopping
@@ -78,6 +79,8 @@ def _run(request: Request, stopping: Stopping) -> int:
 
     mission = find_mission(request.mission, request.overrides, request.seed, request.allow_code)
     destination = choose_destination(mission.name, request.output)
+    if request.is_talkative:
+        warn_of_path_file(mission)
     with Progress(request.is_talkative) as progress:
 
         def note(stage: str, done: int, total: int) -> None:

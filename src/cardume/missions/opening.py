@@ -7,12 +7,14 @@ from pathlib import Path
 from cardume.errors import InputError, MissionError, Position, Problem
 from cardume.missions import library
 from cardume.missions.available import catalog
+from cardume.missions.drafting import draft_mission, file_section
 from cardume.missions.formats import read_plan
+from cardume.missions.geodesy import GeoPoint
 from cardume.missions.loading import load_mission, parse_mission
 from cardume.missions.mission import Mission
+from cardume.missions.route import FilePath
 
 MISSION_FILES = (".yaml", ".yml")
-SLOWEST = 0.5  # [-] of its planned speed, for the time that a path file by itself is given
 
 
 def open_mission(
@@ -24,7 +26,7 @@ def open_mission(
     """Find and read a mission.
 
     Args:
-        given: a mission file, a path file (MEDUSA text), or the name of a built-in mission.
+        given: a mission file, a path file (MEDUSA text, .plan, WPL, GPX, GeoJSON), or the name of a built-in mission.
         overrides: what `--set` gives, as `current.speed=0.2 m/s`.
         seed: instead of the mission's own.
         allow_code: folders from which the mission's own laws may be imported.
@@ -42,11 +44,12 @@ def open_mission(
         text = mission_of_path_file(Path(given))
         mission = parse_mission(text, known, overrides, source=f"made from {given}", directory=Path(given).parent)
     else:
-        raise _nothing_there(str(given))
+        raise nothing_there(str(given))
     return mission if seed is None else replace(mission, seed=seed)
 
 
-def _nothing_there(given: str) -> InputError:
+def nothing_there(given: str) -> InputError:
+    """The error that a name is neither a file nor a built-in mission, to raise."""
     from cardume.missions.source import nearest_file
     from cardume.missions.wording import unknown
 
@@ -66,32 +69,19 @@ def mission_of_path_file(file: Path) -> str:
     Raises:
         MissionError: the path file cannot be read.
     """
-    plan = read_plan(file)
-    speeds = [segment.speed for segment in plan.segments if segment.speed]
-    length = sum(segment.length for segment in plan.segments)
-    seconds = 60.0 + length / (SLOWEST * min(speeds, default=0.5))
-    lines = [
-        "cardume: 1",
-        f"name: {_safe(file.name.split('.')[0])}",
-        f"duration: {round(seconds)} s",
-        f"path: {{type: file, file: '{file.name}'}}",
-        "vehicles:",
-    ]
-    for number, member in enumerate(plan.members):
-        sensors = "gnss: {}, ahrs: {}, depth: {}, thruster_speed: {}"
-        carried = f"{sensors}, usbl: {{}}" if number == 0 and len(plan.members) > 1 else sensors
-        lines += [
-            f"  - name: vehicle-{member.id}",
-            f"    depth: {member.depth or 0.0:g} m",
-            f"    offset: {{ahead: {member.ahead:g} m, starboard: {member.starboard:g} m}}",
-            f"    sensors: {{{carried}}}",
-        ]
-    lines += ["compensation: {law: crab}", "current_observer: {law: complementary}"]
-    if not speeds:
-        lines.append("formation: {speed: 0.5 m/s}")
-    return "\n".join(lines) + "\n"
+    return draft_mission(read_plan(file), file_section(file.name), file.name.split(".")[0])
 
 
-def _safe(name: str) -> str:
-    kept = "".join(c if c.isalnum() or c in "-_" else "-" for c in name)
-    return kept.strip("-")[:64] or "mission"
+def notes_of(mission: Mission) -> tuple[str, ...]:
+    """What of a mission's path file is not flown, one sentence each; nothing where it has no path file.
+
+    Args:
+        mission: without sweeps.
+
+    Raises:
+        MissionError: the path file cannot be read.
+    """
+    if not isinstance(mission.path, FilePath):
+        return ()
+    origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
+    return read_plan(Path(mission.path.file), origin).notes

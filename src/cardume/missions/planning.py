@@ -68,7 +68,7 @@ def make_plan(mission: Mission, catalog: Catalog) -> Planned:
         InputError: a path that cannot be built, an offset that does not fit, a current that does not cover it.
     """
     origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
-    reference, origin = _reference_path(mission, origin)
+    reference, origin = reference_path(mission, origin)
     speed = mission.formation.speed if mission.formation.speed is not None else np.nan
     own = _positioned(mission, "path", lambda: offset_path(reference, 0.0, 0.0, speed))
     if not np.isfinite(own).all():
@@ -98,7 +98,16 @@ def _positioned(mission: Mission, key: str, build: Callable[[], Any]) -> Any:
         raise mission.error(key, str(problem)) from None
 
 
-def _reference_path(mission: Mission, origin: GeoPoint | None) -> tuple[ReferencePath, GeoPoint | None]:
+def reference_path(mission: Mission, origin: GeoPoint | None) -> tuple[ReferencePath, GeoPoint | None]:
+    """The reference path of a mission, and where its local axes begin.
+
+    Args:
+        mission: with every value fixed.
+        origin: of the local axes; None: not known, unless a path file says it.
+
+    Raises:
+        InputError: a path that cannot be built, or a path file that cannot be read.
+    """
     if isinstance(mission.path, FilePath):
         plan = read_plan(Path(mission.path.file), origin)
         return plan.segments, plan.origin

@@ -16,6 +16,7 @@ from cardume.missions.checks import (
     guidance,
     messages,
     observer,
+    path_file,
     sensing,
     speeds,
     timing,
@@ -55,6 +56,7 @@ CHECKS: tuple[Check, ...] = (
     messages.check_slots,
     timing.check_duration,
     timing.check_steps,
+    path_file.check_path_file,
 )
 
 

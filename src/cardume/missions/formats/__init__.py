@@ -1,20 +1,25 @@
-"""Path files that other programs wrote: MEDUSA / Farol text."""
+"""Path files that other programs wrote and read: MEDUSA text, QGroundControl plans, WPL lists, GPX, GeoJSON."""
 
 from __future__ import annotations
 
+import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cardume.errors import MissionError, Position, Problem
-from cardume.missions.source import nearest_file
+from cardume.missions.formats.content import GEOJSON, GPX, QGC, WPL, format_of, read_text
 from cardume.units import printable
 
 if TYPE_CHECKING:
     from cardume.missions.formats.plan import Plan
     from cardume.missions.geodesy import GeoPoint
 
-MAX_BYTES = 1_000_000
-READ = "MEDUSA / Farol text is read: a line with the version, 3, then one such as '491854.338 4290819.848 29S'"
+# Each reader is loaded where it is needed: commands start faster.
+READERS = {
+    QGC: ("qgroundcontrol", "read_qgroundcontrol"),
+    WPL: ("wpl", "read_wpl"),
+    GPX: ("gpx", "read_gpx"),
+    GEOJSON: ("geojson", "read_geojson"),
+}
 
 
 def read_plan(file: Path, origin: GeoPoint | None = None) -> Plan:
@@ -22,57 +27,35 @@ def read_plan(file: Path, origin: GeoPoint | None = None) -> Plan:
 
     Args:
         file: where it is.
-        origin: place it there instead of where it says.
+        origin: of the local axes. A drawing in local coordinates (MEDUSA) is moved there; places given in latitude
+            and longitude stay where they are.
 
     Raises:
         MissionError: no such file, a format that is not read, or contents that cannot be flown.
     """
-    from cardume.missions.formats.medusa import parse_medusa
-    from cardume.missions.formats.medusa_plan import to_plan
-
-    text, source = read_text(file), printable(str(file))
-    known = _other_format(text)
-    if known:
-        raise MissionError([Problem(Position(source, 1, ""), f"looks like {known}; {READ}")])
-    return to_plan(parse_medusa(text, source), origin)
+    return parse_plan(read_text(file), printable(str(file)), origin=origin)
 
 
-def read_text(file: Path) -> str:
-    """The text of a path file; bytes that are not UTF-8 are read as Latin-1, for the sake of old comments.
+def parse_plan(text: str, source: str, *, named: str = "", origin: GeoPoint | None = None) -> Plan:
+    """Read the text of a path file.
+
+    Args:
+        text: its contents.
+        source: what messages call it.
+        named: its format, if it is known: medusa, plan, wpl, gpx or geojson.
+        origin: see `read_plan`.
 
     Raises:
-        MissionError: missing, a directory, unreadable, too large or binary.
+        MissionError: contents that cannot be flown.
     """
+    kind = named or format_of(text, source)
+    if kind in READERS:
+        from cardume.missions.formats.waypoints import to_plan
 
-    def error(message: str) -> MissionError:
-        return MissionError([Problem(Position(printable(str(file)), 0, ""), message)])
+        module, function = READERS[kind]
+        draft = getattr(importlib.import_module(f"{__name__}.{module}"), function)(text, source)
+        return to_plan(draft, origin)
+    from cardume.missions.formats import medusa_plan
+    from cardume.missions.formats.medusa import parse_medusa
 
-    try:
-        if file.exists() and not file.is_file():
-            raise error("is not a regular file; give a path file")
-        with open(file, "rb") as stream:
-            content = stream.read(MAX_BYTES + 1)
-    except FileNotFoundError:
-        raise error(f"no such file{nearest_file(file)}") from None
-    except (OSError, ValueError) as problem:
-        reason = getattr(problem, "strerror", None) or str(problem)
-        raise error(f"cannot be read: {reason}; check the path and its permissions") from None
-    if len(content) > MAX_BYTES:
-        raise error(f"larger than {MAX_BYTES:,} bytes; a path file holds a few hundred lines of text")
-    if b"\0" in content:
-        raise error(f"is a binary file or UTF-16 text; {READ}")
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
-
-
-def _other_format(text: str) -> str:
-    head = text.lstrip()[:2000]
-    if head.startswith("QGC WPL"):
-        return "a list of waypoints (QGC WPL)"
-    if head.startswith("{"):
-        return "a QGroundControl plan" if '"fileType"' in head else "JSON"
-    if head.startswith("<"):
-        return "XML, such as GPX or KML"
-    return ""
+    return medusa_plan.to_plan(parse_medusa(text, source), origin)

@@ -23,6 +23,21 @@ class Member:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class Fence:
+    """An area that a plan keeps to or keeps out of; kept for information, nothing flies by it.
+
+    Attributes:
+        corners: of a polygon, or the center of a circle.
+        radius: [m] of a circle; 0 for a polygon.
+        is_inclusion: whether vehicles are to stay inside.
+    """
+
+    corners: tuple[GeoPoint, ...]
+    radius: float = 0.0
+    is_inclusion: bool = True
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Plan:
     """A reference path on the Earth, and who flies beside it.
 
@@ -32,6 +47,8 @@ class Plan:
         segments: the reference path in local axes, with its speeds.
         members: of the formation.
         notes: what of the file is not flown, one sentence each.
+        name: what the file calls it; may be empty.
+        fences: areas that the file names.
     """
 
     source: str
@@ -39,3 +56,5 @@ class Plan:
     segments: ReferencePath
     members: tuple[Member, ...]
     notes: tuple[str, ...] = ()
+    name: str = ""
+    fences: tuple[Fence, ...] = ()

@@ -1,0 +1,251 @@
+"""From one kind of file to another: missions and path files to path files, path files to missions.
+
+Whoever adds a way, such as from a log to tracks, adds its kinds of file to `KINDS` and a `Converter` to
+`CONVERTERS`; the command line needs no change.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cardume.errors import InputError
+from cardume.missions import library
+from cardume.missions.formats import parse_plan
+from cardume.missions.formats.content import FORMATS, format_of, read_text
+from cardume.missions.formats.plan import Member, Plan
+from cardume.missions.geodesy import GeoPoint
+from cardume.units import printable
+
+if TYPE_CHECKING:
+    from cardume.missions.mission import Mission
+
+MISSION = "mission"
+KINDS: dict[str, tuple[str, ...]] = {MISSION: (".yaml", ".yml"), **{name: f.suffixes for name, f in FORMATS.items()}}
+"""Kinds of file, by the endings of their names."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Request:
+    """What is to be converted.
+
+    Attributes:
+        source: a file, or the name of a built-in mission.
+        source_kind: one of KINDS; empty: to be found out.
+        target: the file to be written.
+        target_kind: one of KINDS; empty: what its name says.
+        origin: where local axes begin; None: where the source says.
+        speed: [m/s] where the source has none; None: left open.
+        tolerance: [m] how far straight legs may lie from the arcs that they stand for.
+        vehicle: whose own path is wanted; empty: the reference path.
+        overrides: what `--set` gives, for a mission.
+        seed: instead of the mission's own.
+        allow_code: folders from which the mission's own laws may be imported.
+    """
+
+    source: str
+    source_kind: str = ""
+    target: Path
+    target_kind: str = ""
+    origin: GeoPoint | None = None
+    speed: float | None = None
+    tolerance: float = 0.05
+    vehicle: str = ""
+    overrides: Sequence[str] = ()
+    seed: int | None = None
+    allow_code: Sequence[Path] = ()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Conversion:
+    """What came out.
+
+    Attributes:
+        content: of the file to be written.
+        holds: what is in it, in a few words.
+        lost: what the target does not keep, one sentence each.
+        notes: what of the source is not flown, one sentence each.
+    """
+
+    content: bytes
+    holds: str
+    lost: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Converter:
+    """A way from some kinds of file to others."""
+
+    sources: frozenset[str]
+    targets: frozenset[str]
+    convert: Callable[[Request], Conversion]
+
+
+def convert(request: Request) -> Conversion:
+    """Convert a file.
+
+    Args:
+        request: what, and into what.
+
+    Raises:
+        InputError: a source that cannot be read, a target that is not known, or no way between them.
+    """
+    target_kind = request.target_kind or _kind_of_name(str(request.target))
+    if not target_kind:
+        endings = ", ".join(f"{suffixes[0]} ({kind})" for kind, suffixes in KINDS.items())
+        raise InputError(
+            f"{printable(str(request.target))}: the name does not say what to write; end it in one of {endings},"
+            " or give --to"
+        )
+    request = replace(
+        request, source_kind=request.source_kind or _kind_of_source(request.source), target_kind=target_kind
+    )
+    for converter in CONVERTERS:
+        if request.source_kind in converter.sources and target_kind in converter.targets:
+            return converter.convert(request)
+    ways = sorted(set().union(*(c.targets for c in CONVERTERS if request.source_kind in c.sources)))
+    raise InputError(
+        f"there is no way from {request.source_kind} to {target_kind}; from {request.source_kind} there are"
+        f" {', '.join(ways) or 'none'}"
+    )
+
+
+def _kind_of_name(name: str) -> str:
+    lowered = name.lower()
+    return next((kind for kind, suffixes in KINDS.items() if lowered.endswith(suffixes)), "")
+
+
+def _kind_of_source(source: str) -> str:
+    """By its contents where that is a path file, else by its name."""
+    kind = _kind_of_name(source)
+    if (source in library.names() and not Path(source).is_file()) or (kind and kind not in FORMATS):
+        return kind or MISSION
+    if not Path(source).exists():
+        from cardume.missions.opening import nothing_there
+
+        raise nothing_there(source)
+    return format_of(read_text(Path(source)), source)
+
+
+def _to_path_file(request: Request) -> Conversion:
+    from cardume.missions.formats.writing import with_speed, write_plan
+
+    plan, lost = _plan_of(request)
+    written = write_plan(with_speed(plan, request.speed), request.target_kind, plan.name, request.tolerance)
+    length = sum(segment.length for segment in plan.segments)
+    what = "lines and arcs" if request.target_kind == "medusa" else "points"
+    return Conversion(
+        content=written.content,
+        holds=f"{FORMATS[request.target_kind].title}: {written.points} {what}, {length:.6g} m",
+        lost=(*written.lost, *lost),
+        notes=plan.notes,
+    )
+
+
+def _plan_of(request: Request) -> tuple[Plan, list[str]]:
+    """The path that a source holds, and what of the source beside it is not kept."""
+    if request.source_kind == MISSION:
+        plan, names, lost = _plan_of_mission(request)
+    else:
+        path = Path(request.source)
+        text, source = read_text(path), printable(str(path))
+        plan = parse_plan(text, source, named=request.source_kind, origin=request.origin)
+        plan = replace(plan, name=plan.name or path.name.split(".")[0])
+        names, lost = [str(member.id) for member in plan.members], []
+    if request.vehicle:
+        plan = _own_plan(plan, names, request.vehicle)
+    elif request.source_kind == MISSION and request.target_kind == "medusa" and len(names) > 1:
+        numbered = ", ".join(f"{name} is {number}" for number, name in enumerate(names, 1))
+        lost.append(f"the names of the vehicles: {numbered}")
+    return plan, lost
+
+
+def _plan_of_mission(request: Request) -> tuple[Plan, list[str], list[str]]:
+    """The path of a mission, the names of its vehicles, and what is lost of it in any path file."""
+    from cardume.missions.drawing import draw
+    from cardume.missions.opening import open_mission
+    from cardume.missions.planning import reference_path
+
+    opened = open_mission(request.source, list(request.overrides), request.seed, list(request.allow_code))
+    mission = opened if opened.is_fixed else draw(opened, opened.seed)
+    given = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
+    segments, origin = reference_path(mission, request.origin or given)
+    if origin is None:
+        raise mission.error(
+            "origin",
+            "is not given, and a path file needs places on the Earth; say where north = east = 0 lies with"
+            " --origin LATITUDE,LONGITUDE in degrees, or in the mission",
+        )
+    lost = ["the rest of the mission: vehicles, laws, sensors, current, what is required"]
+    plan = Plan(source=request.source, origin=origin, segments=segments, members=_members(mission), name=mission.name)
+    speed = mission.formation.speed
+    plan = replace(plan, segments=tuple(replace(s, speed=speed) if s.speed is None else s for s in plan.segments))
+    return _whole_laps(plan, mission, lost), [vehicle.name for vehicle in mission.vehicles], lost
+
+
+def _members(mission: Mission) -> tuple[Member, ...]:
+    return tuple(
+        Member(id=number, ahead=v.offset.ahead, starboard=v.offset.starboard, depth=v.depth)
+        for number, v in enumerate(mission.vehicles, 1)
+    )
+
+
+def _whole_laps(plan: Plan, mission: Mission, lost: list[str]) -> Plan:
+    """A circle is flown until the mission ends: as many laps as that may be."""
+    (first, *rest) = plan.segments
+    lap = 2.0 * math.pi / abs(first.curvature) if first.curvature else math.inf
+    if rest or first.length <= 2.0 * lap or first.speed is None:
+        return plan
+    laps = min(math.ceil(first.speed * mission.duration / lap), round(first.length / lap))
+    lost.append(f"laps beyond the {laps} that the mission's duration allows")
+    return replace(plan, segments=(replace(first, length=laps * lap),))
+
+
+def _own_plan(plan: Plan, names: Sequence[str], vehicle: str) -> Plan:
+    """One vehicle's own path, at its own speeds: an outer vehicle is faster in an arc."""
+    from cardume.missions.wording import unknown
+    from cardume.paths.offset import own_path
+
+    if vehicle not in names:
+        raise InputError(f"--vehicle {printable(vehicle)}: {unknown('no such vehicle', vehicle, list(names))}")
+    member = plan.members[names.index(vehicle)]
+    segments = []
+    for own in own_path(plan.segments, member.starboard):
+        stretch = own.shape.length / own.reference_length if own.reference_length else 1.0
+        speed = None if own.shape.speed is None else own.shape.speed * stretch
+        segments.append(replace(own.shape, speed=speed))
+    alone = replace(member, ahead=0.0, starboard=0.0)
+    return replace(plan, segments=tuple(segments), members=(alone,), name=f"{plan.name}-{vehicle}")
+
+
+def _resolve(request: Request) -> Conversion:
+    """A mission with every default written."""
+    from cardume.missions.opening import open_mission
+
+    mission = open_mission(request.source, list(request.overrides), request.seed, list(request.allow_code))
+    text = mission.to_yaml(request.target.resolve().parent)
+    return Conversion(content=text.encode(), holds="mission: every default written")
+
+
+def _to_mission(request: Request) -> Conversion:
+    from cardume.missions.drafting import draft_mission, is_smooth, place_section, segments_section
+
+    plan, _ = _plan_of(request)
+    if not is_smooth(plan.segments):
+        raise InputError("paths with corners cannot be written as missions yet")
+    path = [place_section(plan.origin), *segments_section(plan.segments)]
+    text = draft_mission(plan, path, plan.name, request.speed)
+    lost = ("the geofence",) if plan.fences else ()
+    return Conversion(content=text.encode(), holds=f"mission: {len(plan.segments)} legs", lost=lost, notes=plan.notes)
+
+
+PATH_FILES = frozenset(FORMATS)
+CONVERTERS: tuple[Converter, ...] = (
+    Converter(sources=PATH_FILES | {MISSION}, targets=PATH_FILES, convert=_to_path_file),
+    Converter(sources=PATH_FILES, targets=frozenset({MISSION}), convert=_to_mission),
+    Converter(sources=frozenset({MISSION}), targets=frozenset({MISSION}), convert=_resolve),
+)
