@@ -57,6 +57,7 @@ def make_mission() -> SimpleNamespace:
         seed=7,
         duration=700.0,
         is_fixed=True,
+        path=None,
         require=(),
         transient=SimpleNamespace(threshold=0.5, hold=10.0),
         current=SimpleNamespace(name="uniform", parameters={"speed": 0.1, "towards": math.pi / 3}),

@@ -275,11 +275,12 @@ def test_all_that_is_wrong_is_said_at_once() -> None:
     ("name", "content", "said"),
     [
         ("a.txt", b"3\n\0\0", "binary file"),
-        ("b.plan", b'{"fileType": "Plan"}', "looks like a QGroundControl plan"),
-        ("c.waypoints", b"QGC WPL 110\n0\t1", "looks like a list of waypoints"),
-        ("d.gpx", b"<?xml version='1.0'?><gpx/>", "looks like XML"),
+        ("b.txt", b'{"fileType": "Plan"}', "version: is missing or null; plans of version 1"),
+        ("c.txt", b"QGC WPL 110\n0\t1", "has 2 columns"),
+        ("d.txt", b"<?xml version='1.0'?><gpx/>", "holds no points"),
         ("e.txt", b"\xff\xfe3\x00", "UTF-16"),
-        ("f.txt", b"x" * 1_000_001, "larger than 1,000,000 bytes"),
+        ("f.txt", b"x" * 20_000_001, "larger than 20,000,000 bytes"),
+        ("g.txt", b" \r\n", "is empty"),
     ],
 )
 def test_other_files_are_refused(tmp_path: Path, name: str, content: bytes, said: str) -> None:

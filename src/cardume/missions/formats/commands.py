@@ -117,6 +117,15 @@ def speed_changes(speeds: Sequence[float | None]) -> Iterator[float | None]:
         before = speed
 
 
+def written_place(degrees: tuple[float, float]) -> tuple[float, float]:
+    """A place as a command gives it: 0, 0 would mean where the vehicle is, so one there is a centimeter beside it.
+
+    Args:
+        degrees: latitude and longitude.
+    """
+    return (0.0, 1e-7) if max(map(abs, degrees)) < 1e-7 else degrees
+
+
 @dataclass(slots=True)
 class _Execution:
     """Steps through a list, and keeps what it passes."""

@@ -110,9 +110,9 @@ class _Reader:
         self._object((), None)
         notes = list[str]()
         if self.areas:
-            notes.append(f"{self.areas} areas (polygons): not flown")
+            notes.append(f"areas, polygons ({self.areas}): not flown")
         if self.lines and self.points:
-            notes.append(f"{len(self.points)} single points beside the lines: not flown")
+            notes.append(f"single points beside the lines ({len(self.points)}): not flown")
         elif self.points:
             notes.append("points without a line are flown in the order of the file")
             self.lines = [self.points]
@@ -121,7 +121,7 @@ class _Reader:
             raise self.document.error((), f"holds {found}; a path is a LineString or MultiLineString")
         gaps = sum(_is_gap(before[-1].place, after[0].place) for before, after in pairwise(self.lines))
         if gaps:
-            notes.append(f"{gaps} gaps between lines are flown straight across")
+            notes.append(f"gaps between lines ({gaps}): flown straight across")
         waypoints = [waypoint for line in self.lines for waypoint in line]
         name = self.names[0] if self.names else ""
         return Draft(

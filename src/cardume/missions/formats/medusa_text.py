@@ -58,7 +58,7 @@ def _formation(members: Sequence[Member]) -> Iterator[str]:
 
 def _sections(segment: Segment, grid: GridScale, tolerance: float) -> Iterator[str]:
     """A segment as LINE or ARC."""
-    speed = f"{segment.speed:.12g}"
+    speed = repr(segment.speed)
     if segment.curvature == 0.0:
         ends = [(segment.north, segment.east), *samples(segment, tolerance)]
         for start, end in pairwise(ends):

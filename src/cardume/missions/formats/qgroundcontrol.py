@@ -13,7 +13,14 @@ import math
 from typing import Any
 
 from cardume.errors import MissionError
-from cardume.missions.formats.commands import CHANGE_SPEED, WAYPOINT, Command, speed_changes, to_waypoints
+from cardume.missions.formats.commands import (
+    CHANGE_SPEED,
+    WAYPOINT,
+    Command,
+    speed_changes,
+    to_waypoints,
+    written_place,
+)
 from cardume.missions.formats.document import Document, Path, described
 from cardume.missions.formats.plan import Fence
 from cardume.missions.formats.sampling import Course
@@ -62,9 +69,9 @@ def read_qgroundcontrol(text: str, source: str) -> Draft:
         raise MissionError(p._replace(position=document.located(p.position)) for p in error.problems) from None
     fences = _fences(document)
     if fences:
-        notes.append(f"geofence: {len(fences)} areas are read, but nothing flies by them")
+        notes.append(f"geofence ({len(fences)}): read, but nothing flies by it")
     if rallies := document.get(("rallyPoints", "points")):
-        notes.append(f"rally points: {len(rallies) if isinstance(rallies, list) else 1} are not used")
+        notes.append(f"rally points ({len(rallies) if isinstance(rallies, list) else 1}): not used")
     notes = [*not_flown, *notes]
     return Draft(source=source, name="", waypoints=waypoints, notes=notes, fences=fences, locate=document.located)
 
@@ -80,7 +87,7 @@ def write_qgroundcontrol(course: Course) -> bytes:
     for speed, point in zip(speed_changes(course.speeds), course.points, strict=True):
         if speed is not None:
             items.append(_item(len(items) + 1, CHANGE_SPEED, NO_PLACE, [1, speed, -1, 0, 0, 0, 0]))
-        place = [0, 0, 0, None, *point.degrees, 0.0 - depth]
+        place = [0, 0, 0, None, *written_place(point.degrees), 0.0 - depth]
         altitude = {"AMSLAltAboveTerrain": None, "Altitude": 0.0 - depth, "AltitudeMode": 1}
         items.append({**altitude, **_item(len(items) + 1, WAYPOINT, RELATIVE, place)})
     slowest = min((speed for speed in course.speeds if speed is not None), default=0.5)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ import numpy as np
 from cardume.errors import InputError
 from cardume.missions.formats.plan import Fence, Plan
 from cardume.missions.geodesy import to_geographic
-from cardume.paths.segment import Segment, end_of, point_on
+from cardume.paths.segment import Segment, point_on
 
 TOLERANCE = 0.05  # [m]
 DIGITS = 10  # decimals of a degree: 11 micrometers
@@ -69,10 +69,11 @@ def to_course(plan: Plan, name: str, tolerance: float = TOLERANCE, most: int = 1
         for point in samples(segment, tolerance):
             north_east.append(point)
             speeds.append(segment.speed)
-        if len(speeds) > most:
-            raise InputError(
-                f"the path needs more than {most:,} points at a tolerance of {tolerance:g} m; give a larger --tolerance"
-            )
+            if len(speeds) > most:
+                raise InputError(
+                    f"the path needs more than {most:,} points at a tolerance of {tolerance:g} m; give a larger"
+                    " --tolerance"
+                )
     north, east = np.array(north_east).T
     places = np.column_stack(to_geographic(north, east, plan.origin))
     depths = {member.depth for member in plan.members}
@@ -86,7 +87,7 @@ def to_course(plan: Plan, name: str, tolerance: float = TOLERANCE, most: int = 1
     )
 
 
-def samples(segment: Segment, tolerance: float) -> Sequence[tuple[float, float]]:
+def samples(segment: Segment, tolerance: float) -> Iterator[tuple[float, float]]:
     """Points north, east [m] behind the start of a segment, its end the last.
 
     The sagitta of a chord that turns by a on an arc of radius R is R (1 - cos(a / 2)).
@@ -95,13 +96,13 @@ def samples(segment: Segment, tolerance: float) -> Sequence[tuple[float, float]]
         segment: line or arc.
         tolerance: [m] > 0.
     """
-    if segment.curvature == 0.0:
-        end = end_of(segment)
-        return [(end.north, end.east)]
-    radius = 1.0 / abs(segment.curvature)
-    count = pieces(segment, 2.0 * math.acos(max(1.0 - tolerance / radius, 0.0)))  # at most half circles
-    points = (point_on(segment, segment.length * k / count) for k in range(1, count + 1))
-    return [(point.north, point.east) for point in points]
+    count = 1
+    if segment.curvature:
+        most_turned = 2.0 * math.acos(max(1.0 - tolerance * abs(segment.curvature), 0.0))  # at most a half circle
+        count = pieces(segment, most_turned)
+    for k in range(1, count + 1):
+        point = point_on(segment, segment.length * k / count)
+        yield point.north, point.east
 
 
 def pieces(arc: Segment, most_turned: float) -> int:

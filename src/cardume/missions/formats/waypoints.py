@@ -108,7 +108,7 @@ def check_place(latitude: float, longitude: float) -> str:
         return ""
     said = f"latitude {latitude:.10g} deg, longitude {longitude:.10g} deg lies nowhere"
     if abs(latitude) <= 180.0 and abs(longitude) <= 90.0:
-        return f"{said}; latitudes lie between -90 and 90 deg: latitude and longitude are probably exchanged"
+        return f"{said}; latitudes lie between -90 and 90 deg: perhaps latitude and longitude are exchanged"
     if abs(latitude) <= 90e7 and abs(longitude) <= 180e7 and min(abs(latitude), abs(longitude)) > 1000.0:
         return f"{said}; these look like degrees times 10^7: divide them"
     return f"{said}; latitudes lie between -90 and 90 deg, longitudes between -180 and 180 deg"

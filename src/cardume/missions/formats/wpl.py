@@ -14,7 +14,14 @@ import math
 import re
 
 from cardume.errors import MissionError, Position, Problem
-from cardume.missions.formats.commands import CHANGE_SPEED, WAYPOINT, Command, speed_changes, to_waypoints
+from cardume.missions.formats.commands import (
+    CHANGE_SPEED,
+    WAYPOINT,
+    Command,
+    speed_changes,
+    to_waypoints,
+    written_place,
+)
 from cardume.missions.formats.content import refused
 from cardume.missions.formats.sampling import Course
 from cardume.missions.formats.waypoints import Draft
@@ -77,7 +84,7 @@ def write_wpl(course: Course) -> bytes:
     for speed, point in zip(speed_changes(course.speeds), course.points, strict=True):
         if speed is not None:
             rows.append(_row(len(rows), NO_PLACE, CHANGE_SPEED, (1.0, speed, -1.0), (0.0, 0.0), 0.0))
-        rows.append(_row(len(rows), RELATIVE, WAYPOINT, (), point.degrees, altitude))
+        rows.append(_row(len(rows), RELATIVE, WAYPOINT, (), written_place(point.degrees), altitude))
     return ("\n".join([HEADER, *rows]) + "\n").encode()
 
 
@@ -85,7 +92,7 @@ def _row(
     index: int, frame: int, code: int, parameters: tuple[float, ...], place: tuple[float, float], altitude: float
 ) -> str:
     four = [*parameters, 0.0, 0.0, 0.0, 0.0][:4]
-    numbers = [*(f"{value:.12g}" for value in four), *(f"{degrees:.10f}" for degrees in place), f"{altitude:.12g}"]
+    numbers = [*(repr(value) for value in four), *(f"{degrees:.10f}" for degrees in place), f"{altitude:.12g}"]
     return "\t".join([str(index), str(int(index == 0)), str(frame), str(code), *numbers, "1"])
 
 
