@@ -66,7 +66,7 @@ def warn_of_path_file(mission: "Mission") -> None:
     Args:
         mission: every value of it fixed.
     """
-    from cardume.missions.opening import notes_of
+    from cardume.missions.formats.notes import notes_of
 
     for note in notes_of(mission):
         click.secho("warning: ", fg="yellow", bold=True, nl=False, err=True)

@@ -9,10 +9,8 @@ from cardume.missions import library
 from cardume.missions.available import catalog
 from cardume.missions.drafting import draft_mission, file_section
 from cardume.missions.formats import read_plan
-from cardume.missions.geodesy import GeoPoint
 from cardume.missions.loading import load_mission, parse_mission
 from cardume.missions.mission import Mission
-from cardume.missions.route import FilePath
 
 MISSION_FILES = (".yaml", ".yml")
 
@@ -70,18 +68,3 @@ def mission_of_path_file(file: Path) -> str:
         MissionError: the path file cannot be read.
     """
     return draft_mission(read_plan(file), file_section(file.name), file.name.split(".")[0])
-
-
-def notes_of(mission: Mission) -> tuple[str, ...]:
-    """What of a mission's path file is not flown, one sentence each; nothing where it has no path file.
-
-    Args:
-        mission: without sweeps.
-
-    Raises:
-        MissionError: the path file cannot be read.
-    """
-    if not isinstance(mission.path, FilePath):
-        return ()
-    origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
-    return read_plan(Path(mission.path.file), origin).notes

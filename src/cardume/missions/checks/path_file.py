@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from cardume.missions.checks.finding import Finding
 from cardume.missions.checks.scene import Scene
-from cardume.missions.opening import notes_of
+from cardume.missions.formats.notes import notes_of
 
 
 def check_path_file(scene: Scene) -> Iterator[Finding]:
