@@ -29,7 +29,7 @@ from cardume.simulation.flight import Flight
 FILE_NAME = "report.html"
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 USERS_LAW = re.compile(r": \"?([A-Za-z_][\w.]*):[A-Za-z_]\w*")  # law: my_lab.laws:my_law
-PRINTED = {"width": 680, "height": 880}  # [pixel] of charts on a page of A4, 96 to the inch
+PRINTED = {"width": 680, "height": 925}  # [pixel] of charts on a page of A4, 96 to the inch
 MOVED = (
     *("north", "east", "depth", "heading", "speed", "cross_track"),
     *("north_estimate", "east_estimate", "cross_track_estimate", "current_north", "current_east"),

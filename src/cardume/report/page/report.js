@@ -33,7 +33,12 @@
     modeBarButtonsToRemove: ["sendChartToCloud", "select2d", "lasso2d", "autoScale2d", "resetCameraLastSave3d"],
     plotlyServerURL: "",
   };
-  const draw = (id) => Plotly.newPlot(byId(id), filled(report.figures[id]), report.figures[id].layout, options);
+  const draw = (id) => {
+    const { layout } = report.figures[id];
+    // a finger that moves over a chart scrolls the page
+    if (matchMedia("(pointer: coarse)").matches && !layout.scene) layout.dragmode = false;
+    return Plotly.newPlot(byId(id), filled(report.figures[id]), layout, { ...options, displayModeBar: window.innerWidth > 700 });
+  };
 
   // ---- an instant ----------------------------------------------------------------------------------------------
   const place = (time) => {
