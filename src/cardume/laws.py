@@ -121,6 +121,8 @@ FAMILIES = (
     "usbl",
     "dvl",
     "thruster_speed",
+    "altimeter",
+    "bathymetry",
 )
 _families: dict[str, "Family"] = {}
 

@@ -110,6 +110,20 @@ class Arrival(NamedTuple):
     delivered: float  # [-] 1, or 0 when lost
 
 
+class Spot(NamedTuple):
+    """A place at which the depth of the water is wanted."""
+
+    north: float  # [m]
+    east: float  # [m]
+    field: SharedRows  # (n,) table of a gridded seabed
+
+
+class Seabed(NamedTuple):
+    """The seabed below a vehicle."""
+
+    depth: float = NOTHING  # [m] below the surface
+
+
 class Measured(NamedTuple):
     """All that the sensors of one vehicle say in one tick; held values, but a fix only when it is new."""
 
@@ -121,6 +135,7 @@ class Measured(NamedTuple):
     shaft_speed: float = NOTHING  # [rad/s]
     dvl_surge: float = NOTHING  # [m/s] through the water
     dvl_sway: float = NOTHING  # [m/s] through the water
+    altitude: float = NOTHING  # [m] above the seabed; NaN without an echo
     gnss_north: float = NOTHING  # [m] new in this tick, else NaN
     gnss_east: float = NOTHING  # [m]
     gnss_age: float = NOTHING  # [s] since it was valid
@@ -276,6 +291,7 @@ class Report(NamedTuple):
     time_of_validity: float = NOTHING  # [s]
     coordination_state: float = NOTHING  # [m]
     path_speed: float = NOTHING  # [m/s] rate of the coordination state
+    phase: float = 4.0  # [-] of its mission, see onboard/phases.py; 4: on its path
 
 
 class Sighting(NamedTuple):
@@ -287,3 +303,4 @@ class Sighting(NamedTuple):
     coordination_state: float = NOTHING  # [m]
     path_speed: float = NOTHING  # [m/s]
     time_of_validity: float = NOTHING  # [s] of the coordination state; NaN: not known
+    phase: float = 4.0  # [-] of its mission

@@ -17,6 +17,8 @@ from cardume.maths.elementary import (
     tanh,
 )
 from cardume.maths.frames import to_body, to_body_3d, to_cartesian, to_ned, to_ned_3d, to_path, to_spherical
+from cardume.maths.profile import interpolate
+from cardume.maths.region import inside_circle, inside_polygon
 from cardume.maths.trigonometry import (
     ANGLE_LIMIT,
     HALF_PI,
@@ -48,6 +50,9 @@ __all__ = [
     "exp",
     "floor",
     "hypot",
+    "inside_circle",
+    "inside_polygon",
+    "interpolate",
     "log",
     "maximum",
     "minimum",

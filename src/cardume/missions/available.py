@@ -14,11 +14,12 @@ from cardume.onboard.estimation import current, neighbors, position, speed
 from cardume.paths import projection, virtual_target
 from cardume.simulation.flight import METRICS
 from cardume.vehicles import kinematic, medusa, medusa_2013
-from cardume.world import acoustics, currents, sensors
+from cardume.world import acoustics, bathymetry, currents, sensors
 
 # Importing a room registers its laws.
 ROOMS = (
     acoustics,
+    bathymetry,
     compensation,
     control,
     coordination,

@@ -64,6 +64,11 @@ VARIABLES = {
     "thrust": Meaning("N", "thrust, forward"),
     "yaw_moment": Meaning("N m", "yaw moment, positive to starboard"),
     "shaft_speed_rpm": Meaning("rpm", "mean shaft speed of the horizontal thrusters"),
+    "altitude": Meaning("m", "true height above the seabed; none without a bathymetry"),
+    "depth_desired": Meaning("m", "depth asked of the autopilot"),
+    "phase": Meaning(
+        "1", "phase of the mission: 0 dive, 1 gather, 2 ready, 3 assembled, 4 go, 5 hold, 6 surface, 7 abort"
+    ),
 }
 MESSAGES = {
     "time_sent": Meaning("s", "when the message was sent"),

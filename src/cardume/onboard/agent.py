@@ -4,6 +4,7 @@ from cardume.compiler import Rows, compiled, load, some, where
 from cardume.maths import atan2, clip, hypot
 from cardume.onboard.compensation import compensate as choose_heading
 from cardume.onboard.coordination import correct_speed
+from cardume.onboard.depths import choose_depth
 from cardume.onboard.guidance import guide as ask_guidance
 from cardume.onboard.mind import (
     Correction,
@@ -20,6 +21,8 @@ from cardume.onboard.navigation import (
     speed_through_water,
 )
 from cardume.onboard.neighborhood import Said, look_around, predict_neighbors, report
+from cardume.onboard.pace import keep_pace
+from cardume.onboard.phases import HOLD_GAIN, HOLD_RADIUS, change_phase, wait_or_go
 from cardume.paths.projection import point_at
 from cardume.paths.table import LENGTH_OWN
 from cardume.signals import (
@@ -33,9 +36,6 @@ from cardume.signals import (
     PathError,
     Reference,
 )
-
-HOLD_RADIUS = 1.0  # [m] within which a vehicle that holds the end point rests
-HOLD_GAIN = 0.2  # [1/s] speed per distance when it comes back to it
 
 
 @compiled
@@ -57,12 +57,15 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
     motion = believed_motion(mind, measured, speed)
     position = navigate(mind, measured, heard, motion, time)
     current = observe_current(mind, position, motion)
-    error = locate(mind, position, motion, current)
+    error = keep_pace(mind, locate(mind, position, motion, current), time)
     look_around(mind, measured, position, motion, error, time)
     others = predict_neighbors(mind, heard, error, time)
+    change_phase(mind, measured, heard, error, time)
     along = progress(mind, error, coordinate(mind, others))
     demand = guide(mind, error, motion, along)
-    reference = compensate(mind, error, demand, along, motion)
+    demand, along = wait_or_go(mind, demand, along, error)
+    depth = choose_depth(mind, measured, error, time)
+    reference = compensate(mind, demand, along, depth, motion)
     return reference, report(mind, measured, time)
 
 
@@ -111,17 +114,17 @@ def progress(mind: Mind, error: PathError, correction: float) -> float:
 
 
 @compiled
-def compensate(mind: Mind, error: PathError, demand: Demand, along: float, motion: Motion) -> Reference:
-    """Heading and speed that give the course and the speed in this current: (36) corrected.
+def compensate(mind: Mind, demand: Demand, along: float, depth: float, motion: Motion) -> Reference:
+    """Heading and speed that give the course and the speed in this current, (36) corrected, and the depth.
 
     A heading, a yaw rate or a speed that guidance asked for itself stays as it is. Where it asked for
     nothing the course is not a number, which ends the mission.
 
     Args:
         mind: of the vehicle.
-        error: where it is on its path.
         demand: of guidance.
         along: [m/s] wanted along the path.
+        depth: [m] to keep.
         motion: how it believes it moves.
     """
     setup = get_setup(mind.own, 0)
@@ -129,7 +132,6 @@ def compensate(mind: Mind, error: PathError, demand: Demand, along: float, motio
     course = given(demand.course, where(turns, motion.heading, demand.heading))
     steering = choose_heading(mind.book, 0, Course(course, along, setup.over_ground), motion)
     heading = where(turns, motion.heading, given(demand.heading, steering.heading))
-    depth = setup.depth * (1.0 - setup.surfaces * error.finished)
     return Reference(course, heading, given(demand.speed, steering.speed), depth, demand.yaw_rate)
 
 

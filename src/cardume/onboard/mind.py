@@ -7,6 +7,12 @@ from cardume.laws import LawBook
 from cardume.signals import NOTHING, DvlReading, Report, Sighting, Water
 
 LONG_AGO = -1e9  # [s] before any mission
+NEVER = 1e9  # [s] after any mission; [m] beyond any depth
+
+# The whole numbers of `Mind.features`: what of phases.py, pace.py and depths.py a vehicle's mission asks for.
+ORDERS_START, PACE_POINTS, VARIES_ALONG, DEPTH_OVER, DEPTH_POINTS, KEEPS_ALTITUDE, HAS_PHASES, FENCE_CORNERS = range(8)
+NUM_FEATURES = 8
+OVER_TIME, OVER_PATH = 1, 2  # values of DEPTH_OVER; 0: a constant depth
 
 
 class Setup(NamedTuple):
@@ -17,6 +23,62 @@ class Setup(NamedTuple):
     stays: float = 1.0  # [-] 1: hold the end point, 0: go on along the extended path
     surfaces: float = 0.0  # [-] 1: come up at the end
     shares_sightings: float = 0.0  # [-] 1: carries a USBL head and tells the others where they are
+
+
+class Orders(NamedTuple):
+    """What a vehicle is told beside its `Setup` where its mission is more than a path."""
+
+    altitude: float = 0.0  # [m] above the seabed to keep
+    dives: float = 0.0  # [-] 1: goes down before it sets out
+    dive_tolerance: float = 0.5  # [m] of the depth it is to reach
+    dive_timeout: float = NEVER  # [s]
+    gathers: float = 0.0  # [-] 1: waits for those it hears before it sets out
+    gather_radius: float = 2.0  # [m] of its start within which it is there
+    gather_timeout: float = NEVER  # [s]
+    hold_time: float = NEVER  # [s] at the end of the path before it comes up
+    circle_radius: float = 0.0  # [m] on which it waits; 0: it holds its place
+    aborts: float = 0.0  # [-] 1: gives up where one of the following is so
+    abort_surfaces: float = 1.0  # [-] 1: comes up when it gives up, 0: stays down
+    silence: float = NEVER  # [s] since it heard anybody
+    latest: float = NEVER  # [s] since the start of the mission
+    depth_limit: float = NEVER  # [m]
+    altitude_limit: float = -NEVER  # [m]
+    fence_radius: float = 0.0  # [m] of a round geofence; 0: none, or a polygon
+    fence_north: float = 0.0  # [m] its center
+    fence_east: float = 0.0  # [m]
+
+
+class Progress(NamedTuple):
+    """Where in its mission a vehicle is, see phases.py."""
+
+    phase: float = 4.0  # [-]
+    since: float = 0.0  # [s] when it entered that phase
+    heard: float = 0.0  # [s] when it last heard anybody
+    anchor_north: float = 0.0  # [m] where it waits
+    anchor_east: float = 0.0  # [m]
+
+
+class Journal(NamedTuple):
+    """When a vehicle entered each phase [s], NaN: not yet; and why."""
+
+    dive: float = NOTHING  # [s]
+    gather: float = NOTHING  # [s]
+    ready: float = NOTHING  # [s]
+    assembled: float = NOTHING  # [s]
+    go: float = NOTHING  # [s]
+    hold: float = NOTHING  # [s]
+    surface: float = NOTHING  # [s]
+    abort: float = NOTHING  # [s]
+    dive_late: float = 0.0  # [-] 1: the dive ended by its timeout
+    gather_late: float = 0.0  # [-] 1: waiting for the others ended by its timeout
+    reason: float = 0.0  # [-] why it gave up
+
+
+class Sounding(NamedTuple):
+    """What a vehicle remembers of depth."""
+
+    seabed: float = NOTHING  # [m] depth of the seabed below it, filtered
+    wanted: float = NOTHING  # [m] depth that it is to keep, unless it comes up
 
 
 class Whereabouts(NamedTuple):
@@ -63,6 +125,7 @@ class Acquaintance(NamedTuple):
     time_of_fix: float = NOTHING  # [s] when
     segment: float = 0.0  # [-] of its own path, where it was seen
     arc_length: float = 0.0  # [m]
+    phase: float = 4.0  # [-] of its mission, as it last said
 
 
 class Mind(NamedTuple):
@@ -70,6 +133,8 @@ class Mind(NamedTuple):
 
     book: LawBook
     own: Rows  # the records of OWN
+    orders: Rows  # Orders, then the points of v_L over time, of depth, and the corners of the geofence
+    features: Any  # Ints (NUM_FEATURES,)
     others: Rows  # (vehicle, Acquaintance)
     paths: Rows  # path tables of all vehicles
     path_starts: Any  # Ints (vehicle,) where each path table begins
@@ -81,7 +146,12 @@ class Mind(NamedTuple):
     size: int  # [-] vehicles in the fleet
 
 
-OWN = Layout(Setup, DvlReading, Whereabouts, Water, Along, Speech, Correction)
+ORDERS = Layout(Orders)
+get_orders = ORDERS.reader(Orders)
+ORDERS_WIDTH = ORDERS.width
+POINT_WIDTH = 2
+
+OWN = Layout(Setup, DvlReading, Whereabouts, Water, Along, Speech, Correction, Progress, Journal, Sounding)
 get_setup, put_setup = OWN.reader(Setup), OWN.writer(Setup)
 get_speed, put_speed = OWN.reader(DvlReading), OWN.writer(DvlReading)
 get_whereabouts, put_whereabouts = OWN.reader(Whereabouts), OWN.writer(Whereabouts)
@@ -89,6 +159,9 @@ get_current, put_current = OWN.reader(Water), OWN.writer(Water)
 get_along, put_along = OWN.reader(Along), OWN.writer(Along)
 get_speech, put_speech = OWN.reader(Speech), OWN.writer(Speech)
 get_correction, put_correction = OWN.reader(Correction), OWN.writer(Correction)
+get_progress, put_progress = OWN.reader(Progress), OWN.writer(Progress)
+get_journal, put_journal = OWN.reader(Journal), OWN.writer(Journal)
+get_sounding, put_sounding = OWN.reader(Sounding), OWN.writer(Sounding)
 
 OWN_WIDTH = OWN.width
 
@@ -146,3 +219,22 @@ def path_of(mind: Mind, vehicle: int) -> Rows:
 def neighbors_of(mind: Mind, vehicle: int) -> Any:
     """The list of those a vehicle coordinates with, after its length."""
     return at(mind.neighbors, vehicle * mind.list_width)
+
+
+@compiled
+def pace_points(mind: Mind) -> Rows:
+    """The points of v_L over time."""
+    return at(mind.orders, ORDERS_WIDTH)
+
+
+@compiled
+def depth_points(mind: Mind) -> Rows:
+    """The points of the depth profile."""
+    return at(mind.orders, ORDERS_WIDTH + POINT_WIDTH * load(mind.features, PACE_POINTS))
+
+
+@compiled
+def fence_corners(orders: Rows, features: Any) -> Rows:
+    """The corners of the geofence, from a vehicle's orders and whole numbers."""
+    before = load(features, PACE_POINTS) + load(features, DEPTH_POINTS)
+    return at(orders, ORDERS_WIDTH + POINT_WIDTH * before)

@@ -8,11 +8,13 @@ from cardume.onboard.coordination import correct_speed
 from cardume.onboard.estimation.neighbors import predict
 from cardume.onboard.messaging import decide_to_send
 from cardume.onboard.mind import (
+    HAS_PHASES,
     Acquaintance,
     Mind,
     Speech,
     get_acquaintance,
     get_along,
+    get_progress,
     get_setup,
     get_speech,
     head_of,
@@ -24,6 +26,8 @@ from cardume.onboard.mind import (
     put_speech,
     sighting_in,
 )
+from cardume.onboard.pace import pace_of_neighbor
+from cardume.onboard.phases import is_waiting, takes_part
 from cardume.paths.projection import project
 from cardume.paths.table import PathPlace
 from cardume.signals import (
@@ -65,7 +69,11 @@ def listen(mind: Mind, heard: Rows) -> None:
 def forget_news(mind: Mind, vehicle: int) -> None:
     """What was new in the last tick is known now."""
     known = get_acquaintance(mind.others, vehicle)
-    put_acquaintance(mind.others, vehicle, _updated(known, known.state, known.path_speed, known.time_of_validity, 0.0))
+    put_acquaintance(
+        mind.others,
+        vehicle,
+        _updated(known, known.state, known.path_speed, known.time_of_validity, 0.0, known.phase),
+    )
 
 
 @compiled
@@ -75,16 +83,20 @@ def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
     if sender == vehicle:
         head = head_of(message)
         state, speed, valid = head.coordination_state, head.path_speed, head.time_of_validity
+        phase = head.phase
     else:
         seen = sighting_in(message, vehicle)
         state, speed, valid = seen.coordination_state, seen.path_speed, seen.time_of_validity
+        phase = seen.phase
     newer = is_fresh(message) & (valid > known.time_of_validity)
-    learnt = _updated(known, state, speed, valid, 1.0)
+    learnt = _updated(known, state, speed, valid, 1.0, phase)
     put_acquaintance(mind.others, vehicle, where(newer, learnt, known))
 
 
 @compiled
-def _updated(known: Acquaintance, state: float, path_speed: float, valid: float, is_new: float) -> Acquaintance:
+def _updated(
+    known: Acquaintance, state: float, path_speed: float, valid: float, is_new: float, phase: float
+) -> Acquaintance:
     return Acquaintance(
         state,
         path_speed,
@@ -97,6 +109,7 @@ def _updated(known: Acquaintance, state: float, path_speed: float, valid: float,
         known.time_of_fix,
         known.segment,
         known.arc_length,
+        phase,
     )
 
 
@@ -153,6 +166,7 @@ def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, val
         valid,
         place.segment,
         place.arc_length,
+        known.phase,
     )
     put_acquaintance(mind.others, vehicle, where(is_new, seen, known))
 
@@ -195,6 +209,7 @@ def expect_correction(mind: Mind, vehicle: int, own_before: float) -> None:
         known.time_of_fix,
         known.segment,
         known.arc_length,
+        known.phase,
     )
     put_acquaintance(mind.others, vehicle, after)
 
@@ -204,20 +219,27 @@ def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) ->
     """Predict where a vehicle is along the formation by now."""
     known = get_acquaintance(mind.others, vehicle)
     age = time - known.time_of_validity
-    heard_last = NeighborReport(known.is_new, known.state, known.path_speed, age, error.speed_profile, known.correction)
+    nominal, correction = pace_of_neighbor(mind, known, error), known.correction
+    is_known = known.state == known.state
+    if load(mind.features, HAS_PHASES) > 0:
+        waits = is_waiting(known.phase)
+        nominal, correction = where(waits, 0.0, nominal), where(waits, 0.0, correction)
+        is_known = is_known & takes_part(known.phase)
+    heard_last = NeighborReport(known.is_new, known.state, known.path_speed, age, nominal, correction)
     predicted = predict(mind.book, vehicle, heard_last)
     after = Acquaintance(
         known.state,
         known.path_speed,
         known.time_of_validity,
         known.is_new,
-        where(known.state == known.state, predicted, NOTHING),
+        where(is_known, predicted, NOTHING),
         known.correction,
         known.north,
         known.east,
         known.time_of_fix,
         known.segment,
         known.arc_length,
+        known.phase,
     )
     put_acquaintance(mind.others, vehicle, after)
 
@@ -255,5 +277,12 @@ def report(mind: Mind, measured: Measured, time: float) -> Said:
     sends = sending > 0.5
     after = where(sends, Speech(time + 0.0 * speech.sequence, speech.sequence + 1.0), speech)
     put_speech(mind.own, 0, after)
-    told = Report(sending, after.sequence, time + 0.0 * sending, along.coordination_state, along.path_speed)
+    told = Report(
+        sending,
+        after.sequence,
+        time + 0.0 * sending,
+        along.coordination_state,
+        along.path_speed,
+        get_progress(mind.own, 0).phase,
+    )
     return Said(told, mind.others)

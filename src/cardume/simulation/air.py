@@ -95,7 +95,13 @@ def speak(fleet: Fleet, sender: int, said: Said) -> None:
         for other in range(fleet.size):
             known = get_acquaintance(said.others, other)
             seen = Sighting(
-                known.north, known.east, known.time_of_fix, known.state, known.path_speed, known.time_of_validity
+                known.north,
+                known.east,
+                known.time_of_fix,
+                known.state,
+                known.path_speed,
+                known.time_of_validity,
+                known.phase,
             )
             put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
         note_sent(fleet, sender, sends)

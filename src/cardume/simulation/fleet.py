@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cardume.compiler import Layout, Rows, at, compiled, rows_of
+from cardume.compiler import Layout, Rows, at, compiled, load, rows_of
 from cardume.laws import COLUMNS, FAMILIES, LawBook
 from cardume.maths.random import Key
-from cardume.onboard.mind import OTHERS_WIDTH, OWN_WIDTH, Mind
+from cardume.onboard.mind import NUM_FEATURES, ORDERS_START, OTHERS_WIDTH, OWN_WIDTH, Mind
 from cardume.paths.table import PathPlace
 from cardume.signals import Command, Measured, Reference, VesselState, Water
 
@@ -50,6 +50,7 @@ class Held(NamedTuple):
     shaft_speed: float = np.nan  # [rad/s]
     dvl_surge: float = np.nan  # [m/s]
     dvl_sway: float = np.nan  # [m/s]
+    altitude: float = np.nan  # [m]
 
 
 class Satellite(NamedTuple):
@@ -70,7 +71,7 @@ get_on_path, put_on_path = VEHICLE.reader(OnPath), VEHICLE.writer(OnPath)
 get_held, put_held = VEHICLE.reader(Held), VEHICLE.writer(Held)
 get_satellite, put_satellite = VEHICLE.reader(Satellite), VEHICLE.writer(Satellite)
 
-SENSORS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed")
+SENSORS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed", "altimeter")
 STREAMS = (*SENSORS, "link")  # each with its own random numbers
 NUM_SENSORS, NUM_STREAMS = len(SENSORS), len(STREAMS)
 TIMING, KEY = Layout(Timing), Layout(Key)
@@ -118,7 +119,13 @@ class Fleet(NamedTuple):
     path_starts: Any  # Ints (vehicle,)
     graph: Any  # Ints (vehicle, list) neighbors, then known, then sources
     list_width: int
+    orders: Rows  # of each vehicle, see onboard/mind.py
+    features: Any  # Ints (vehicle, NUM_FEATURES)
     field: Any  # SharedRows: gridded current, the same in all lanes
+    seabed: Any  # SharedRows: gridded seabed
+    has_seabed: int  # [-] 1: the mission has a seabed
+    has_phases: int  # [-] 1: some vehicle has more to do than to follow its path
+    is_watched: int  # [-] 1: depth, altitude, geofence or separation are limited
     air: Air
     scores: Rows  # (vehicle, the records of SCORES)
     fleet_score: Rows  # FleetScore
@@ -143,6 +150,9 @@ class Whole(NamedTuple):
     slots: int
     message_width: int
     widest: int
+    has_seabed: int = 0
+    has_phases: int = 0
+    is_watched: int = 0
 
 
 class Tables(NamedTuple):
@@ -164,7 +174,10 @@ class Tables(NamedTuple):
     paths: np.ndarray
     path_starts: np.ndarray
     graph: np.ndarray
+    orders: np.ndarray
+    features: np.ndarray
     field: np.ndarray
+    seabed: np.ndarray
     outbox: np.ndarray
     sending: np.ndarray
     sent: np.ndarray
@@ -219,7 +232,13 @@ def fleet_of(tables: Tables) -> Fleet:
         rows_of(tables.path_starts),
         rows_of(tables.graph),
         whole.list_width,
+        rows_of(tables.orders),
+        rows_of(tables.features),
         rows_of(tables.field),
+        rows_of(tables.seabed),
+        whole.has_seabed,
+        whole.has_phases,
+        whole.is_watched,
         air,
         rows_of(tables.scores),
         rows_of(tables.fleet_score),
@@ -251,6 +270,8 @@ def mind_of(fleet: Fleet, vehicle: int) -> Mind:
     return Mind(
         book_of(fleet, vehicle, fleet.tick),
         at(fleet.minds, vehicle * OWN_WIDTH),
+        orders_of(fleet, vehicle),
+        features_of(fleet, vehicle),
         at(fleet.others, vehicle * fleet.size * OTHERS_WIDTH),
         fleet.paths,
         fleet.path_starts,
@@ -261,6 +282,18 @@ def mind_of(fleet: Fleet, vehicle: int) -> Mind:
         vehicle,
         fleet.size,
     )
+
+
+@compiled
+def features_of(fleet: Fleet, vehicle: int) -> Any:
+    """The whole numbers that say what a vehicle's mission asks for."""
+    return at(fleet.features, vehicle * NUM_FEATURES)
+
+
+@compiled
+def orders_of(fleet: Fleet, vehicle: int) -> Rows:
+    """What a vehicle is told of phases, profiles and limits."""
+    return at(fleet.orders, load(fleet.features, vehicle * NUM_FEATURES + ORDERS_START))
 
 
 @compiled
@@ -282,6 +315,7 @@ def measured_of(fleet: Fleet, vehicle: int) -> Measured:
         held.shaft_speed,
         held.dvl_surge,
         held.dvl_sway,
+        held.altitude,
         satellite.north,
         satellite.east,
         satellite.age,

@@ -15,7 +15,9 @@ POSITION_BELIEFS = ("north_estimate", "east_estimate", "current_north_estimate",
 PATH_BELIEFS = ("cross_track_estimate", "coordination_state_estimate")
 REFERENCES = ("course_desired", "heading_desired", "speed_desired", "speed_correction")
 EFFORT = ("thrust", "yaw_moment", "shaft_speed_rpm")
-CHANNELS = (*MOTION, *CURRENT, *ON_PATH, *POSITION_BELIEFS, *PATH_BELIEFS, *REFERENCES, *EFFORT)
+VERTICAL = ("altitude", "depth_desired")
+STAGE = ("phase",)
+CHANNELS = (*MOTION, *CURRENT, *ON_PATH, *POSITION_BELIEFS, *PATH_BELIEFS, *REFERENCES, *EFFORT, *VERTICAL, *STAGE)
 
 MESSAGE_COLUMNS = ("time_sent", "time_received", "sender", "receiver", "kind", "lost", "time_of_validity")
 MESSAGE_KINDS = ("report",)  # the number in the column `kind` is a place in this list

@@ -1,13 +1,16 @@
 """A mission as the engine takes it: laws, numbers and path tables, one record per vehicle."""
 
+import dataclasses
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
 from cardume.laws import Law
-from cardume.onboard.mind import Setup
+from cardume.onboard.mind import OVER_PATH, OVER_TIME, Orders, Setup
 from cardume.paths.table import PathPlace
 from cardume.signals import VesselState
+from cardume.simulation.safety import Safety
 from cardume.simulation.score import Rules
 
 
@@ -27,6 +30,46 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class OrderBook:
+    """What a vehicle is told beside its `Setup`.
+
+    Attributes:
+        orders: numbers.
+        pace: [s], [m/s] points of v_L over time; none: v_L is that of the path's table.
+        varies_along: whether v_L differs along the path.
+        depth: [s] or [m], [m] points of the depth to keep; none: it is a constant.
+        depth_over: what the first of each pair is.
+        keeps_altitude: whether it keeps an altitude.
+        has_phases: whether it has more to do than to follow its path.
+        fence: [m], [m] north and east of the corners of a polygon; none: no fence or a round one.
+    """
+
+    orders: Orders = Orders()
+    pace: tuple[tuple[float, float], ...] = ()
+    varies_along: bool = False
+    depth: tuple[tuple[float, float], ...] = ()
+    depth_over: Literal["time", "path"] = "time"
+    keeps_altitude: bool = False
+    has_phases: bool = False
+    fence: tuple[tuple[float, float], ...] = ()
+
+    @property
+    def numbers(self) -> list[float]:
+        """As the table of `onboard/mind.py` has it."""
+        return [*self.orders, *(x for points in (self.pace, self.depth, self.fence) for point in points for x in point)]
+
+    def features(self, start: int) -> list[int]:
+        """The whole numbers beside it.
+
+        Args:
+            start: [-] where in the table of orders its numbers begin.
+        """
+        over = {"time": OVER_TIME, "path": OVER_PATH}[self.depth_over] if self.depth else 0
+        flags = int(self.keeps_altitude), int(self.has_phases)
+        return [start, len(self.pace), int(self.varies_along), over, len(self.depth), *flags, len(self.fence)]
+
+
+@dataclass(frozen=True)
 class VehiclePlan:
     """One vehicle of a mission.
 
@@ -38,6 +81,8 @@ class VehiclePlan:
         estimate: [m] north and east where it believes it starts.
         place: where on its path it starts.
         setup: what it is told before the mission.
+        orders: what more it is told, of phases, profiles and limits.
+        safety: the limits of depth and altitude that it is measured by.
     """
 
     name: str
@@ -47,6 +92,8 @@ class VehiclePlan:
     estimate: tuple[float, float] | None = None
     place: PathPlace = PathPlace()
     setup: Setup = Setup()
+    orders: OrderBook = OrderBook()
+    safety: Safety = Safety()
 
 
 @dataclass(frozen=True)
@@ -63,6 +110,9 @@ class Plan:
         log_period: [s] between records; 0: no log.
         field: (n,) table of a gridded current.
         rules: what the metrics count.
+        seabed: (n,) table of a gridded seabed.
+        separation: [m] that two vehicles are not to come nearer; 0: no limit.
+        is_watched: whether anything of depth, altitude, geofence or separation is limited.
     """
 
     vehicles: tuple[VehiclePlan, ...]
@@ -74,6 +124,9 @@ class Plan:
     log_period: float = 1.0
     field: np.ndarray = field(default_factory=lambda: np.zeros(1))
     rules: Rules = Rules()
+    seabed: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(1))
+    separation: float = 0.0
+    is_watched: bool = False
 
     @property
     def num_ticks(self) -> int:

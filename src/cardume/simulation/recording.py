@@ -2,17 +2,22 @@
 
 from typing import NamedTuple
 
-from cardume.compiler import Layout, at, compiled, load, store
+from cardume.compiler import Layout, at, compiled, load, store, where
 from cardume.maths import atan2, hypot, to_ned
 from cardume.onboard.mind import (
+    HAS_PHASES,
     OTHERS_WIDTH,
     get_acquaintance,
     get_along,
     get_correction,
     get_current,
+    get_progress,
+    get_setup,
     get_whereabouts,
 )
-from cardume.simulation.fleet import Fleet, get_on_path, get_reference, get_vessel, get_water
+from cardume.onboard.phases import GO, HOLD, SURFACE
+from cardume.simulation.fleet import Fleet, features_of, get_on_path, get_reference, get_vessel, get_water
+from cardume.simulation.sensing import seabed_below
 
 
 class Truth(NamedTuple):
@@ -37,6 +42,7 @@ class Truth(NamedTuple):
     shaft_speed: float  # [rad/s]
     thrust: float  # [N]
     yaw_moment: float  # [N m]
+    altitude: float  # [m]
 
 
 class Thought(NamedTuple):
@@ -52,6 +58,8 @@ class Thought(NamedTuple):
     heading_desired: float  # [rad]
     speed_desired: float  # [m/s]
     speed_correction: float  # [m/s]
+    depth_desired: float  # [m]
+    phase: float  # [-]
 
 
 class MessageRow(NamedTuple):
@@ -109,6 +117,7 @@ def write_truth(fleet: Fleet, row: int, vehicle: int) -> None:
         vessel.shaft_speed,
         vessel.thrust,
         vessel.yaw_moment,
+        seabed_below(fleet, vehicle, vessel).depth - vessel.depth,
     )
     put_truth(fleet.log, row, truth)
 
@@ -130,8 +139,20 @@ def write_thought(fleet: Fleet, row: int, vehicle: int) -> None:
         reference.heading,
         reference.speed,
         get_correction(fleet.minds, vehicle).speed,
+        reference.depth,
+        phase_of(fleet, vehicle),
     )
     put_thought(fleet.log, row, thought)
+
+
+@compiled
+def phase_of(fleet: Fleet, vehicle: int) -> float:
+    """The phase of a vehicle's mission [-]; of one that only follows its path, by what it does at its end."""
+    if load(features_of(fleet, vehicle), HAS_PHASES) > 0:
+        return get_progress(fleet.minds, vehicle).phase
+    setup = get_setup(fleet.minds, vehicle)
+    at_end = where(setup.surfaces > 0.5, SURFACE, where(setup.stays > 0.5, HOLD, GO))
+    return where(get_along(fleet.minds, vehicle).finished > 0.5, at_end, GO + 0.0 * at_end)
 
 
 @compiled

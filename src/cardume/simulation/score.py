@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 from cardume.compiler import Layout, at, compiled, gather, load, scatter, some, where
 from cardume.maths import clip, floor, sqrt
-from cardume.onboard.mind import get_current, get_whereabouts
+from cardume.onboard.mind import get_current, get_progress, get_whereabouts
+from cardume.onboard.phases import is_waiting
 from cardume.paths.projection import point_of_formation
-from cardume.signals import VesselState
+from cardume.signals import NOTHING, VesselState
 from cardume.simulation.fleet import (
     Fleet,
     OnPath,
@@ -20,6 +21,7 @@ from cardume.simulation.fleet import (
     get_vessel,
     get_water,
 )
+from cardume.simulation.safety import Safety, watch
 
 BINS = 512  # of a histogram; bin k holds e with 512 e / (1 + e) in [k, k + 1)
 CROSS_TRACK, FORMATION, HISTOGRAMS = range(3)
@@ -88,13 +90,18 @@ class FleetScore(NamedTuple):
     coordination_squares: float = 0.0  # [m^2 s] of the largest difference of two coordination states
     coordination_max: float = 0.0  # [m]
     separation_squared: float = 1e300  # [m^2] smallest distance of two vehicles
+    separation_limit: float = 0.0  # [m] that two vehicles are not to come nearer
+    too_near: float = NOTHING  # [s] when they first did
+    one: float = 0.0  # [-] who did, by place in the engine
+    other: float = 0.0  # [-]
 
 
-SCORES = Layout(Score, Formation, Talk, Deviation)
+SCORES = Layout(Score, Formation, Talk, Deviation, Safety)
 get_score, put_score = SCORES.reader(Score), SCORES.writer(Score)
 get_formation, put_formation = SCORES.reader(Formation), SCORES.writer(Formation)
 get_talk, put_talk = SCORES.reader(Talk), SCORES.writer(Talk)
 get_deviation, put_deviation = SCORES.reader(Deviation), SCORES.writer(Deviation)
+get_safety, put_safety = SCORES.reader(Safety), SCORES.writer(Safety)
 FLEET_SCORES = Layout(FleetScore)
 get_fleet_score, put_fleet_score = FLEET_SCORES.reader(FleetScore), FLEET_SCORES.writer(FleetScore)
 RULES = Layout(Rules)
@@ -107,6 +114,8 @@ def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time
     before, rules, dt = get_score(fleet.scores, vehicle), get_rules(fleet.requirements, 0), fleet.tick
     error = abs(on_path.cross_track)
     below = where(error < rules.threshold, before.below + dt, 0.0)
+    if fleet.has_phases > 0:
+        below = where(is_waiting(get_progress(fleet.minds, vehicle).phase), 0.0, below)
     ends = (before.settled < 0.5) & (below >= rules.hold - 0.5 * dt)
     settled = where(ends, 1.0, before.settled)
     counted = where((settled > 0.5) & (on_path.finished < 0.5), dt, 0.0)
@@ -144,6 +153,8 @@ def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time
     )
     put_score(fleet.scores, vehicle, after)
     tally(fleet, vehicle, CROSS_TRACK, error, counted > 0.0)
+    if fleet.is_watched > 0:
+        put_safety(fleet.scores, vehicle, watch(fleet, vehicle, vessel, get_safety(fleet.scores, vehicle), time))
 
 
 @compiled
@@ -200,7 +211,7 @@ def note_heard(fleet: Fleet, vehicle: int, here: bool, age: float) -> None:
 
 
 @compiled
-def score_fleet(fleet: Fleet) -> None:
+def score_fleet(fleet: Fleet, time: float) -> None:
     """Count one tick of the fleet: coordination, formation and separation."""
     first = get_on_path(fleet.vehicles, 0).coordination_state
     lowest, highest, total = first, first, 0.0 * first
@@ -219,8 +230,14 @@ def score_fleet(fleet: Fleet) -> None:
         before.coordination_squares + dt * spread * spread,
         where(counts & (spread > before.coordination_max), spread, before.coordination_max),
         nearest_pair(fleet, before.separation_squared),
+        before.separation_limit,
+        before.too_near,
+        before.one,
+        before.other,
     )
     put_fleet_score(fleet.fleet_score, 0, after)
+    if fleet.is_watched > 0:
+        note_too_near(fleet, time)
     if some(counts) and fleet.size > 1:
         score_formation(fleet, total / fleet.size, counts)
 
@@ -241,6 +258,30 @@ def nearest_pair(fleet: Fleet, nearest: float) -> float:
             apart = north * north + east * east + down * down
             nearest = where(apart < nearest, apart, nearest)
     return nearest
+
+
+@compiled
+def note_too_near(fleet: Fleet, time: float) -> None:
+    """Note the first time [s] at which two vehicles came nearer than they are to, and which."""
+    for one in range(fleet.size):
+        here = get_vessel(fleet.vehicles, one)
+        for other in range(one):
+            there, kept = get_vessel(fleet.vehicles, other), get_fleet_score(fleet.fleet_score, 0)
+            north, east, down = there.north - here.north, there.east - here.east, there.depth - here.depth
+            apart = north * north + east * east + down * down
+            limit = kept.separation_limit
+            now = (apart < limit * limit) & (kept.too_near != kept.too_near)
+            after = FleetScore(
+                kept.time,
+                kept.coordination_squares,
+                kept.coordination_max,
+                kept.separation_squared,
+                limit,
+                where(now, time, kept.too_near),
+                where(now, one * 1.0, kept.one),
+                where(now, other * 1.0, kept.other),
+            )
+            put_fleet_score(fleet.fleet_score, 0, after)
 
 
 @compiled

@@ -14,6 +14,8 @@ from cardume.signals import (
     Measured,
     Noise,
     Sampling,
+    Seabed,
+    Spot,
     VesselState,
     Water,
 )
@@ -39,8 +41,10 @@ from cardume.simulation.fleet import (
     put_timing,
 )
 from cardume.simulation.noise import NOISE_WIDTH, noise_of_reading
+from cardume.world.bathymetry import sound
 from cardume.world.sensors.base import (
     read_ahrs,
+    read_altimeter,
     read_depth,
     read_dvl,
     read_gnss,
@@ -48,7 +52,7 @@ from cardume.world.sensors.base import (
     read_usbl,
 )
 
-GNSS, AHRS, DEPTH, USBL, DVL, THRUSTER_SPEED = range(len(SENSORS))
+GNSS, AHRS, DEPTH, USBL, DVL, THRUSTER_SPEED, ALTIMETER = range(len(SENSORS))
 LINK = STREAMS.index("link")
 put_past_vessel, pick_past_vessel = SEEN.writer(VesselState), SEEN.picker(VesselState)
 put_past_water, pick_past_water = SEEN.writer(Water), SEEN.picker(Water)
@@ -62,6 +66,7 @@ def sense(fleet: Fleet, vehicle: int, now: int) -> Measured:
     held = sense_attitude(fleet, vehicle, now, held)
     held = sense_depth(fleet, vehicle, now, held)
     held = sense_shaft(fleet, vehicle, now, held)
+    held = sense_altitude(fleet, vehicle, now, held)
     put_held(fleet.vehicles, vehicle, sense_velocity(fleet, vehicle, now, held))
     sense_position(fleet, vehicle, now)
     sense_others(fleet, vehicle, now)
@@ -170,6 +175,7 @@ def _with_attitude(held: Held, reading: AhrsReading) -> Held:
         held.shaft_speed,
         held.dvl_surge,
         held.dvl_sway,
+        held.altitude,
     )
 
 
@@ -203,6 +209,7 @@ def _with_depth(held: Held, depth: float) -> Held:
         held.shaft_speed,
         held.dvl_surge,
         held.dvl_sway,
+        held.altitude,
     )
 
 
@@ -223,6 +230,51 @@ def sense_shaft(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
         held = where(due, _with_speeds(held, shaft_speed, held.dvl_surge, held.dvl_sway), held)
         schedule_next(fleet, vehicle, THRUSTER_SPEED, timing, due)
     return held
+
+
+@compiled
+def sense_altitude(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+    """Altitude above the seabed by sound, where there is a seabed; NaN without an echo."""
+    if fleet.has_seabed > 0:
+        timing = timing_of(fleet, vehicle, ALTIMETER)
+        due = timing.next_sample <= now
+        if some(due):
+            then = vessel_then(fleet, vehicle, timing, now)
+            altitude = read_altimeter(
+                book_of(fleet, vehicle, fleet.tick),
+                0,
+                then,
+                seabed_below(fleet, vehicle, then),
+                noise_of(fleet, vehicle, ALTIMETER, timing, now),
+                sampling_of(fleet, timing, now),
+            )
+            held = where(due, _with_altitude(held, altitude), held)
+            schedule_next(fleet, vehicle, ALTIMETER, timing, due)
+    return held
+
+
+@compiled
+def _with_altitude(held: Held, altitude: float) -> Held:
+    return Held(
+        held.heading,
+        held.yaw_rate,
+        held.roll,
+        held.pitch,
+        held.depth,
+        held.shaft_speed,
+        held.dvl_surge,
+        held.dvl_sway,
+        altitude,
+    )
+
+
+@compiled
+def seabed_below(fleet: Fleet, vehicle: int, vessel: VesselState) -> Seabed:
+    """The seabed below a vehicle; unknown where the mission has none."""
+    depth = NOTHING * vessel.north
+    if fleet.has_seabed > 0:
+        depth = sound(book_of(fleet, vehicle, fleet.tick), 0, Spot(vessel.north, vessel.east, fleet.seabed))
+    return Seabed(depth)
 
 
 @compiled
@@ -255,6 +307,7 @@ def _with_speeds(held: Held, shaft_speed: float, surge: float, sway: float) -> H
         shaft_speed,
         surge,
         sway,
+        held.altitude,
     )
 
 

@@ -9,8 +9,20 @@ import numpy as np
 from cardume.compiler import WIDTH, Layout
 from cardume.laws import COLUMNS, FAMILIES
 from cardume.maths.random import random_key
-from cardume.onboard.mind import OTHERS, OWN, Acquaintance, Speech, Whereabouts, inbox_width
-from cardume.paths.table import PathPlace
+from cardume.onboard.mind import (
+    OTHERS,
+    OWN,
+    Acquaintance,
+    Journal,
+    Progress,
+    Sounding,
+    Speech,
+    Whereabouts,
+    inbox_width,
+)
+from cardume.onboard.phases import DIVE, GATHER, GO, PHASES
+from cardume.paths.projection import point_at
+from cardume.paths.table import PathPlace, arc_length_at
 from cardume.signals import Noise
 from cardume.simulation.air import NEVER
 from cardume.simulation.fleet import (
@@ -69,6 +81,9 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
             slots,
             messages,
             widest,
+            int(any("bathymetry" in v.laws for v in vehicles)),
+            int(any(v.orders.has_phases for v in vehicles)),
+            int(plan.is_watched),
         ),
         plan.tick,
         _handles(vehicles, size, lanes),
@@ -85,15 +100,17 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
         paths,
         path_starts,
         graph,
+        *_orders(vehicles),
         np.array(plan.field, float),  # never read-only: that would be another type, and compile the engine again
+        np.array(plan.seabed, float),
         np.full(size * slots * messages, np.nan),
         np.zeros(size),
         np.zeros(size, np.int64),
         np.full(links, NEVER),
         np.full(links * slots, NEVER),
         np.full(links * messages, np.nan),
-        np.zeros(size * SCORES.width),
-        _row(FLEET_SCORES, FleetScore()),
+        np.concatenate([_row(SCORES, v.safety) for v in vehicles]),
+        _row(FLEET_SCORES, FleetScore(separation_limit=plan.separation)),
         np.zeros(size * HISTOGRAMS * BINS),
         np.zeros(TROUBLE_WIDTH),
         np.full(max(1, records * size * LOG.width), np.nan),
@@ -121,7 +138,7 @@ def join(tables: Sequence[Tables]) -> Tables:
     joined = []
     for name in Tables._fields:
         parts = [getattr(t, name) for t in full]
-        is_shared = name == "field" or not isinstance(parts[0], np.ndarray) or parts[0].dtype == np.int64
+        is_shared = name in ("field", "seabed") or not isinstance(parts[0], np.ndarray) or parts[0].dtype == np.int64
         if not all(_fit(part, parts[0], is_shared) for part in parts):
             raise ValueError(f"missions in lanes must have the same laws, sizes and graph; these differ in '{name}'")
         joined.append(getattr(first, name) if is_shared else np.ascontiguousarray(np.stack(parts, axis=-1)))
@@ -154,7 +171,30 @@ def _vehicle_row(vehicle: VehiclePlan) -> np.ndarray:
 
 
 def _mind_row(vehicle: VehiclePlan) -> np.ndarray:
-    return _row(OWN, vehicle.setup, Whereabouts(*_estimate(vehicle)), Speech())
+    return _row(
+        OWN, vehicle.setup, Whereabouts(*_estimate(vehicle)), Speech(), _first_phase(vehicle), *_unwritten(vehicle)
+    )
+
+
+def _first_phase(vehicle: VehiclePlan) -> Progress:
+    """What a vehicle begins with, and where it waits: its place in the formation when that is at the start."""
+    orders = vehicle.orders.orders
+    start = point_at(vehicle.path, arc_length_at(vehicle.path, 0.0))
+    phase = DIVE if orders.dives else GATHER if orders.gathers else GO
+    return Progress(phase, 0.0, 0.0, start.north, start.east)
+
+
+def _unwritten(vehicle: VehiclePlan) -> tuple[Journal, Sounding]:
+    begun = PHASES[round(_first_phase(vehicle).phase)]
+    return Journal(**{begun: 0.0}), Sounding()
+
+
+def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
+    """The orders of all vehicles, one after the other, and (vehicle, NUM_FEATURES) whole numbers."""
+    numbers = [v.orders.numbers for v in vehicles]
+    starts = np.cumsum([0, *map(len, numbers)])[:-1]
+    features = [v.orders.features(int(start)) for v, start in zip(vehicles, starts, strict=True)]
+    return np.concatenate(numbers), np.array(features, np.int64).ravel()
 
 
 def _acquaintance(vehicle: VehiclePlan) -> np.ndarray:

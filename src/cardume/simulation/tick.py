@@ -2,7 +2,8 @@
 
 from cardume.compiler import Rows, at, compiled, load, negate, some, store, where
 from cardume.onboard.agent import decide
-from cardume.onboard.mind import get_whereabouts
+from cardume.onboard.mind import get_progress, get_whereabouts
+from cardume.onboard.phases import takes_part
 from cardume.paths.projection import project
 from cardume.signals import Noise, Place, VesselState, Water, Where
 from cardume.simulation.air import arrived, carry, speak
@@ -63,7 +64,7 @@ def tick(fleet: Fleet, now: int) -> bool:
     record(fleet, now)
     for i in range(fleet.size):
         score(fleet, i, get_vessel(fleet.vehicles, i), get_on_path(fleet.vehicles, i), time)
-    score_fleet(fleet)
+    score_fleet(fleet, time)
     for i in range(fleet.size):
         vessel = move(fleet, i, get_reference(fleet.vehicles, i), get_water(fleet.vehicles, i))
         put_vessel(fleet.vehicles, i, vessel)
@@ -91,6 +92,8 @@ def find_on_path(fleet: Fleet, vehicle: int, truth: VesselState) -> None:
     error, place = project(Place(truth.north, truth.east, path), get_true_place(fleet.vehicles, vehicle))
     put_true_place(fleet.vehicles, vehicle, place)
     finished = where(error.finished > 0.5, 1.0, get_on_path(fleet.vehicles, vehicle).finished)
+    if fleet.has_phases > 0:
+        finished = where(takes_part(get_progress(fleet.minds, vehicle).phase), finished, 1.0)
     on_path = OnPath(
         error.cross_track,
         error.along_track,

@@ -1,16 +1,19 @@
-"""Sensors: `gnss`, `ahrs`, `depth`, `usbl`, `dvl`, `thruster_speed`, each a family with one law of its name.
+"""Sensors: `gnss`, `ahrs`, `depth`, `usbl`, `dvl`, `thruster_speed`, `altimeter`; each a family with one law.
 
 With all its sigmas, biases and misalignments 0 and its scales 1 a law returns the truth, to the last bit wherever no
 angle has to be computed.
 """
 
 from cardume.world.sensors.ahrs import ahrs
+from cardume.world.sensors.altimeter import altimeter
 from cardume.world.sensors.base import (
     ahrs_sensor,
+    altimeter_sensor,
     depth_sensor,
     dvl_sensor,
     gnss_sensor,
     read_ahrs,
+    read_altimeter,
     read_depth,
     read_dvl,
     read_gnss,
@@ -28,6 +31,8 @@ from cardume.world.sensors.usbl import usbl
 __all__ = [
     "ahrs",
     "ahrs_sensor",
+    "altimeter",
+    "altimeter_sensor",
     "depth",
     "depth_sensor",
     "dvl",
@@ -35,6 +40,7 @@ __all__ = [
     "gnss",
     "gnss_sensor",
     "read_ahrs",
+    "read_altimeter",
     "read_depth",
     "read_dvl",
     "read_gnss",

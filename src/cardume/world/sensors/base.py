@@ -12,6 +12,7 @@ from cardume.signals import (
     GnssReading,
     Noise,
     Sampling,
+    Seabed,
     UsblReading,
     VesselState,
     Water,
@@ -25,3 +26,4 @@ depth_sensor, read_depth = sensor_family("depth", SCENE)
 dvl_sensor, read_dvl = sensor_family("dvl", SCENE, DvlReading)
 thruster_speed_sensor, read_thruster_speed = sensor_family("thruster_speed", SCENE)
 usbl_sensor, read_usbl = sensor_family("usbl", (Baseline, Noise, Sampling), UsblReading)
+altimeter_sensor, read_altimeter = sensor_family("altimeter", (VesselState, Seabed, Noise, Sampling))

@@ -1,0 +1,52 @@
+"""The speed v_L of the formation, where it is no constant: over time by the clock, along the path by its table."""
+
+from cardume.compiler import compiled, load, where
+from cardume.maths import interpolate
+from cardume.onboard.mind import PACE_POINTS, VARIES_ALONG, Acquaintance, Mind, pace_points, path_of
+from cardume.paths.projection import formation_speed
+from cardume.paths.table import REFERENCE_START, segment_at
+from cardume.signals import PathError
+
+
+@compiled
+def keep_pace(mind: Mind, error: PathError, time: float) -> PathError:
+    """The path error with the v_L of now, where the mission gives it over time.
+
+    Args:
+        mind: of the vehicle.
+        error: with the v_L of the path's table.
+        time: [s] since the start of the mission, which all vehicles know alike.
+    """
+    speed = error.speed_profile
+    if load(mind.features, PACE_POINTS) > 0:
+        speed = interpolate(pace_points(mind), load(mind.features, PACE_POINTS), time + 0.0 * speed)
+    return PathError(
+        error.path_course,
+        error.curvature,
+        error.cross_track,
+        error.along_track,
+        error.path_parameter,
+        error.stretch,
+        speed,
+        error.arc_length,
+        error.finished,
+        error.speed,
+        error.path,
+    )
+
+
+@compiled
+def pace_of_neighbor(mind: Mind, known: Acquaintance, error: PathError) -> float:
+    """v_L [m/s] for another vehicle: of the formation's point where that one is, when v_L differs along the path.
+
+    Args:
+        mind: whose view it is.
+        known: what it knows of the other.
+        error: with its own v_L.
+    """
+    speed = error.speed_profile
+    if load(mind.features, VARIES_ALONG) > 0:
+        path = path_of(mind, mind.me)
+        state = where(known.predicted == known.predicted, known.predicted, error.path_parameter)
+        speed = formation_speed(path, segment_at(path, state, REFERENCE_START), state)
+    return speed
