@@ -63,6 +63,8 @@ LAWS = (
     FakeLaw("depth", "pressure", SENSED),
     FakeLaw("usbl", "usbl", SENSED),
     FakeLaw("dvl", "dvl", SENSED),
+    FakeLaw("altimeter", "altimeter", (P("sigma", 0.1, "m", 0.0), *SENSED)),
+    FakeLaw("bathymetry", "flat", (P("depth", 30.0, "m", 0.0, math.inf, low_open=True),)),
     FakeLaw("thruster_speed", "tachometer", (P("scale", 1.0, "", 0.0, 10.0), P("noise", 0.0, "rad/s", 0.0), *SENSED)),
 )
 METRICS = {"cross_track_rms": "m", "coordination_error_max": "m", "settling_time": "s", "swath_coverage": ""}

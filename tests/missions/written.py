@@ -21,6 +21,7 @@ from cardume.missions.schema import (
     Laws,
     ListOf,
     Name,
+    Profiled,
     Quantity,
     Requirements,
     Text,
@@ -100,6 +101,14 @@ def _quantity(kind: Quantity, vary: bool = True) -> st.SearchStrategy[Any]:
     if kind.in_ticks:
         return st.integers(1, 90).map(lambda n: f"{n / 10} s")
     return st.one_of(_number(kind), _number(kind).map(lambda x: f"{x!r} {kind.unit}".rstrip()))
+
+
+@_written.register
+def _profiled(kind: Profiled, vary: bool = True) -> st.SearchStrategy[Any]:
+    xs = st.lists(st.integers(0, 900), min_size=1, max_size=4, unique=True).map(sorted)
+    pairs = xs.flatmap(lambda x: st.tuples(*[_number(kind)] * len(x)).map(lambda y: [list(p) for p in zip(x, y)]))
+    profile = st.fixed_dictionaries({"profile": st.sampled_from(["time", "path"]), "points": pairs})
+    return st.one_of(_number(kind), profile)
 
 
 def _number(kind: Quantity) -> st.SearchStrategy[float]:

@@ -12,6 +12,7 @@ from cardume.missions.drawing import draw, refuse_sweeps
 from cardume.missions.mission import Mission
 from cardume.missions.planning import Planned, make_plan
 from cardume.paths.outline import outline
+from cardume.simulation.events import events_of
 from cardume.simulation.flight import Flight
 from cardume.simulation.fly import Flown, Trouble, fly
 from cardume.simulation.plan import Plan
@@ -82,6 +83,7 @@ def flight_of(name: str, planned: Planned, flown: Flown, wall_seconds: float = m
         wall_seconds=wall_seconds,
         reference_path=outline(planned.reference)[:, 1:],
         own_paths=tuple(outline(v.path)[:, 1:] for v in plan.vehicles),
+        events=events_of(flown),
     )
 
 

@@ -12,6 +12,8 @@ from cardume.missions.catalog import Catalog
 from cardume.missions.lookup import inlined_laws, law_fields
 from cardume.missions.mission import Mission
 from cardume.missions.schema import (
+    MOST_PROFILE_POINTS,
+    PROFILE_UNITS,
     Field,
     Forms,
     Graph,
@@ -20,6 +22,7 @@ from cardume.missions.schema import (
     Laws,
     ListOf,
     Name,
+    Profiled,
     Quantity,
     Requirements,
     Variant,
@@ -115,6 +118,18 @@ def _quantity(kind: Quantity, _catalog: Catalog) -> dict[str, Any]:
     units = "|".join(re.escape(name) for name in units_like(kind.unit))
     text = {"type": "string", "pattern": f"{NUMBER_TEXT}({units})?$"}
     return {"anyOf": [{"type": "number", low: bounds.low, high: bounds.high}, text]}
+
+
+@_plain.register
+def _profiled(kind: Profiled, catalog: Catalog) -> dict[str, Any]:
+    value = _quantity(kind, catalog)
+    forms = []
+    for over, unit in PROFILE_UNITS.items():
+        point = {"type": "array", "prefixItems": [_quantity(Quantity(unit), catalog), value], "items": False}
+        points = {"type": "array", "minItems": 1, "maxItems": MOST_PROFILE_POINTS, "items": point}
+        keys = {"profile": {"const": over}, "points": points}
+        forms.append({"type": "object", "properties": keys, "required": list(keys), "additionalProperties": False})
+    return {"anyOf": [*value["anyOf"], *forms]}
 
 
 @_plain.register

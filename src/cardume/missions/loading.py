@@ -116,14 +116,15 @@ def _inherit(vehicle: Node, fleet_wide: dict[str, Node], context: Context) -> No
 def _equip(vehicle: Node, context: Context) -> Node:
     """A vehicle whose list of sensors also has those that its model always carries; `none` leaves one out."""
     entries = vehicle.value if isinstance(vehicle.value, dict) else {}
-    sensors, model, depth = (entries.get(key) for key in ("sensors", "model", "depth"))
+    sensors, model, depth, altitude = (entries.get(key) for key in ("sensors", "model", "depth", "altitude"))
     if sensors is None or not isinstance(sensors.value, dict) or is_varying(sensors):
         return vehicle
     named = model.value.get("law", model) if model is not None and isinstance(model.value, dict) else model
-    is_submerged = depth is not None and str(depth.value).split()[:1] not in (["0"], ["0.0"])
+    is_submerged = altitude is not None or (depth is not None and str(depth.value).split()[:1] not in (["0"], ["0.0"]))
     kinds = context.catalog.default_sensors("medusa" if named is None else str(named.value), is_submerged)
     if isinstance(kinds, str):
         return vehicle
+    kinds = kinds if altitude is None else (*kinds, "altimeter")
     carried = sensors.value | {kind: Node({}, sensors.position) for kind in kinds if kind not in sensors.value}
     return Node(entries | {"sensors": Node(carried, sensors.position)}, vehicle.position)
 

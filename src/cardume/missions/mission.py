@@ -23,6 +23,8 @@ from cardume.missions.schema import (
     Laws,
     ListOf,
     Name,
+    Profile,
+    Profiled,
     Quantity,
     Requirements,
     Variant,
@@ -50,7 +52,11 @@ class Origin:
 class Formation:
     """How fast the formation goes; None where every piece of the path says it."""
 
-    speed: Annotated[float | None, Quantity("m/s", POSITIVE), "v_L, along the reference path"] = None
+    speed: Annotated[
+        float | Profile | None,
+        Profiled("m/s", POSITIVE),
+        "v_L, along the reference path; a constant, or a profile of time or path",
+    ] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,6 +109,9 @@ class Mission:
     path: Annotated[AnyPath, Variant(PATHS), "the reference path of the formation"]
     formation: Annotated[Formation, Group(Formation), "how fast the formation goes"]
     current: Annotated[LawChoice, Laws("current", "type", "none", words=STILL), "how the water moves"]
+    bathymetry: Annotated[
+        LawChoice | None, Laws("bathymetry", "type", "none", words={"none": None}), "how deep the sea is"
+    ] = None
     vehicles: Annotated[tuple[Vehicle, ...], ListOf(Group(Vehicle), fixed=True), "the fleet"]
     transient: Annotated[Transient, Group(Transient), "what is left out of the metrics"] = Transient()
     swath: Annotated[float | None, Quantity("m", POSITIVE), "width that a vehicle's sonar covers"] = None

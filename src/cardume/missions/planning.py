@@ -16,7 +16,18 @@ from cardume.missions.currents import Window, explain_coverage, read_current
 from cardume.missions.formats import read_plan
 from cardume.missions.geodesy import GeoPoint
 from cardume.missions.mission import Mission
+from cardume.missions.orders import (
+    deepest,
+    depths_along,
+    is_watched,
+    order_book,
+    safety_of,
+    separation_of,
+    start_depth,
+    table_speed,
+)
 from cardume.missions.route import ArcPath, CirclePath, FilePath, LawnmowerPath, LemniscatePath, LinePath
+from cardume.missions.seabed import numbers_only, read_seabed
 from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
 from cardume.missions.water import CurrentPoint
 from cardume.onboard.mind import Setup
@@ -39,6 +50,7 @@ from cardume.world.currents import ProfilePoint, pack_profile
 IDEAL_SENSORS = ("gnss", "ahrs", "depth", "dvl", "thruster_speed")
 ERRORS = ("sigma", "bias", "deviation", "misalignment", "latency")  # parts of the names of parameters that are errors
 UNLIMITED = 1e9  # [m]
+FARTHEST = ("deepest", "range")  # names of parameters that are limits
 TRIM_STEP = 0.05  # [s]
 TEXTS = ("file", "east", "north", "start_time")  # what `gridded` takes beside numbers
 PROFILE = "profile"  # and `sheared`
@@ -69,13 +81,14 @@ def make_plan(mission: Mission, catalog: Catalog) -> Planned:
     """
     origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
     reference, origin = reference_path(mission, origin)
-    speed = mission.formation.speed if mission.formation.speed is not None else np.nan
+    speed = table_speed(mission, sum(segment.length for segment in reference))
     own = _positioned(mission, "path", lambda: offset_path(reference, 0.0, 0.0, speed))
     if not np.isfinite(own).all():
         raise mission.error("formation.speed", "is not given, and not every piece of the path has a speed; give it")
     paths = [_own_path(mission, vehicle, reference, speed) for vehicle in mission.vehicles]
     water, field = _current(mission, origin, paths, catalog)
     vehicles = tuple(_vehicle(mission, v, p, water, catalog) for v, p in zip(mission.vehicles, paths, strict=True))
+    seabed = read_seabed(mission, origin)
     plan = Plan(
         vehicles,
         np.asarray(mission.adjacency),
@@ -86,6 +99,9 @@ def make_plan(mission: Mission, catalog: Catalog) -> Planned:
         mission.log_period,
         field,
         Rules(mission.transient.threshold, mission.transient.hold, mission.swath or 0.0),
+        seabed,
+        separation_of(mission),
+        is_watched(mission),
     )
     return Planned(plan, own)
 
@@ -174,10 +190,11 @@ def _current(
         origin=origin,
         start_time=texts["start_time"],
         duration=mission.duration,
-        deepest=max(v.depth for v in mission.vehicles),
+        deepest=max(deepest(v) for v in mission.vehicles),
     )
-    points = [outline(path, 20.0)[:, 1:] for path in paths]
-    depths = [np.full((len(p), 1), v.depth) for p, v in zip(points, mission.vehicles, strict=True)]
+    lines = [outline(path, 20.0)[:, 1:] for path in paths]
+    levels = [(line, depth) for line, v in zip(lines, mission.vehicles, strict=True) for depth in depths_along(v)]
+    points, depths = [line for line, _ in levels], [np.full((len(line), 1), depth) for line, depth in levels]
     try:
         field = read_current(str(texts["file"]), window=window, east=texts["east"], north=texts["north"])
         rows = field.to_rows(origin)
@@ -219,7 +236,8 @@ def _vehicle(mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice
         "autopilot": _autopilot(vehicle, catalog),
         "acoustics": _choice(vehicle.acoustics, catalog),
         "current": water,
-        **_sensors(vehicle, mission.tick, catalog),
+        **({"bathymetry": _choice(numbers_only(mission.bathymetry), catalog)} if mission.bathymetry else {}),
+        **_sensors(vehicle, mission.tick, mission.bathymetry is not None, catalog),
     }
     state, place = _start(vehicle, path, laws["model"])
     believed = vehicle.initial_estimate
@@ -231,12 +249,14 @@ def _vehicle(mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice
         (believed.north, believed.east) if believed else None,
         place,
         Setup(
-            vehicle.depth,
+            deepest(vehicle),
             float(vehicle.speed_reference == "ground"),
             float(vehicle.end != "continue"),
             float(vehicle.end == "surface"),
             float("usbl" in laws),
         ),
+        order_book(mission, vehicle, path),
+        safety_of(mission, vehicle),
     )
 
 
@@ -247,14 +267,15 @@ def _autopilot(vehicle: Vehicle, catalog: Catalog) -> Choice:
     return _choice(vehicle.autopilot, catalog)
 
 
-def _sensors(vehicle: Vehicle, tick: float, catalog: Catalog) -> dict[str, Choice]:
+def _sensors(vehicle: Vehicle, tick: float, has_seabed: bool, catalog: Catalog) -> dict[str, Choice]:
     """The sensors a vehicle carries, and the law by which it reads its shaft speed."""
     sensors = vehicle.sensors
     laws: dict[str, Choice] = {}
     if sensors.ideal:
-        laws = {kind: _exact(next(iter(laws_of(kind).values())), tick) for kind in IDEAL_SENSORS}
+        kinds = (*IDEAL_SENSORS, *(("altimeter",) if has_seabed else ()))
+        laws = {kind: _exact(next(iter(laws_of(kind).values())), tick) for kind in kinds}
     else:
-        for kind in ("gnss", "ahrs", "depth", "usbl", "dvl"):
+        for kind in ("gnss", "ahrs", "depth", "usbl", "dvl", "altimeter"):
             if (chosen := getattr(sensors, kind)) is not None:
                 laws[kind] = _choice(chosen, catalog)
         if sensors.thruster_speed is not None:
@@ -284,7 +305,8 @@ def _told_by(model: LawChoice, law: Law, catalog: Catalog) -> Choice:
 def _exact(law: Law, tick: float) -> Choice:
     """A sensor without any error, everywhere, in every tick."""
     exact = {p.name: 0.0 for p in law.parameters if any(part in p.name for part in ERRORS)}
-    exact |= {p.name: UNLIMITED for p in law.parameters if p.name == "deepest"}
+    exact |= {p.name: UNLIMITED for p in law.parameters if p.name in FARTHEST}
+    exact |= {p.name: 0.0 for p in law.parameters if p.name == "nearest"}
     return Choice(law, exact | {"period": tick})
 
 
@@ -299,7 +321,7 @@ def _start(vehicle: Vehicle, path: np.ndarray, model: Choice) -> tuple[VesselSta
         heading = point.course + start.heading_error
     else:
         north, east, heading, place = start.north, start.east, start.heading, start_at(path, 0.0)
-    state = VesselState(north, east, vehicle.depth, heading, start.speed)
+    state = VesselState(north, east, start_depth(vehicle), heading, start.speed)
     return state._replace(shaft_speed=_trimmed(model, start.speed)), place
 
 

@@ -13,7 +13,21 @@ from typing import Any
 from cardume.missions.distributions import Choose, Normal, Uniform, Varying
 from cardume.missions.lookup import TEXT_PARAMETERS
 from cardume.missions.mission import Mission, Requirement
-from cardume.missions.schema import File, Forms, Group, Kind, Laws, ListOf, Quantity, Requirements, Variant, fields_of
+from cardume.missions.schema import (
+    PROFILE_UNITS,
+    File,
+    Forms,
+    Group,
+    Kind,
+    Laws,
+    ListOf,
+    Profile,
+    Profiled,
+    Quantity,
+    Requirements,
+    Variant,
+    fields_of,
+)
 from cardume.missions.source import CONSTANTS, NOT_FINITE, NUMBER
 from cardume.missions.vehicle import SHARED, LawChoice
 from cardume.units import format_quantity
@@ -55,6 +69,15 @@ def _write(_kind: Kind, value: Any, _directory: Path | None) -> Any:
 @_write.register
 def _quantity(kind: Quantity, value: float, _directory: Path | None) -> Any:
     return format_quantity(value, kind.unit)
+
+
+@_write.register
+def _profiled(kind: Profiled, value: float | Profile, _directory: Path | None) -> Any:
+    if not isinstance(value, Profile):
+        return format_quantity(value, kind.unit)
+    unit = PROFILE_UNITS[value.over]
+    points = [[format_quantity(x, unit), format_quantity(y, kind.unit)] for x, y in value.points]
+    return {"profile": value.over, "points": points}
 
 
 @_write.register

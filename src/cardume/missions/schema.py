@@ -55,6 +55,51 @@ class Quantity(Kind):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class Profiled(Quantity):
+    """A quantity, or {profile: time | path, points: [[0 s, ...], ...]}: linear between its points, held beyond."""
+
+
+PROFILE_UNITS: Mapping[str, str] = {"time": "s", "path": "m"}
+MOST_PROFILE_POINTS = 1000
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Profile:
+    """A quantity that changes with time or along the reference path, SI."""
+
+    over: str
+    points: tuple[tuple[float, float], ...]
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The quantity at each point."""
+        return tuple(value for _, value in self.points)
+
+    def mean(self, start: float, end: float) -> float:
+        """Its mean from `start` to `end`, a straight line between the points.
+
+        Args:
+            start: [s] or [m]
+            end: [s] or [m] beyond it.
+        """
+        inner = [x for x, _ in self.points if start < x < end]
+        knots = [start, *inner, end]
+        values = [self.at(x) for x in knots]
+        area = sum(0.5 * (a + b) * (q - p) for p, q, a, b in zip(knots, knots[1:], values, values[1:], strict=False))
+        return area / (end - start) if end > start else values[0]
+
+    def at(self, x: float) -> float:
+        """The quantity at a time [s] or place [m]."""
+        before = max((k for k, (place, _) in enumerate(self.points) if place <= x), default=None)
+        if before is None:
+            return self.points[0][1]
+        if before == len(self.points) - 1:
+            return self.points[-1][1]
+        (low, first), (high, second) = self.points[before : before + 2]
+        return first + (second - first) * (x - low) / (high - low)
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Whole(Kind):
     """A whole number without a unit, low <= value <= high."""
 

@@ -26,6 +26,9 @@ class Verdict(NamedTuple):
     vehicle: str | None  # whose value was required; None: of the fleet
     worst: str | None  # whose value it is; None where it is the fleet's own
     met: bool
+    margin: float = math.nan  # [unit] by which it is met, < 0: by which it is missed
+    first_violated: float | None = None  # [s] None: never, or not known of this metric
+    by: str | None = None  # who did then
 
 
 def judge(requirements: Iterable[Requirement], metrics: Metrics) -> tuple[Verdict, ...]:
@@ -34,8 +37,27 @@ def judge(requirements: Iterable[Requirement], metrics: Metrics) -> tuple[Verdic
     Args:
         requirements: of the mission, in the units of METRICS.
         metrics: of the flight.
+
+    The limits that vehicles have of their own are judged as requirements too, those of all alike as one of the fleet.
     """
-    return tuple(_judge_one(requirement, metrics) for requirement in requirements)
+    required = [*requirements]
+    required += [limit for limit in _own_limits(metrics) if not any(_covers(r, limit) for r in required)]
+    return tuple(_judge_one(requirement, metrics) for requirement in required)
+
+
+def _own_limits(metrics: Metrics) -> list[Requirement]:
+    """The limits of the vehicles as requirements, each once."""
+    found: list[Requirement] = []
+    for metric, value in dict.fromkeys((limit.metric, limit.limit) for limit in metrics.limits):
+        names = [limit.vehicle for limit in metrics.limits if (limit.metric, limit.limit) == (metric, value)]
+        of = [None] if None in names or len(names) == len(metrics.vehicles) else names
+        found += [Requirement(metric=metric, limit=value, unit=METRICS[metric].unit, vehicle=name) for name in of]
+    return found
+
+
+def _covers(given: Requirement, limit: Requirement) -> bool:
+    same = (given.metric, given.limit) == (limit.metric, limit.limit)
+    return same and given.vehicle in (None, limit.vehicle)
 
 
 def _judge_one(requirement: Requirement, metrics: Metrics) -> Verdict:
@@ -45,7 +67,22 @@ def _judge_one(requirement: Requirement, metrics: Metrics) -> Verdict:
     else:
         got = metrics.vehicles[vehicle].get(requirement.metric, math.nan)
     met = got >= requirement.limit if metric.wanted == "at least" else got <= requirement.limit
-    return Verdict(requirement.metric, metric.unit, metric.wanted, requirement.limit, got, vehicle, worst, bool(met))
+    margin = got - requirement.limit if metric.wanted == "at least" else requirement.limit - got
+    first, by = _first_violation(requirement, metrics)
+    bound, limit = metric.wanted, requirement.limit
+    return Verdict(requirement.metric, metric.unit, bound, limit, got, vehicle, worst, bool(met), margin, first, by)
+
+
+def _first_violation(requirement: Requirement, metrics: Metrics) -> tuple[float | None, str | None]:
+    """When a requirement was first not met [s], and by whom, where that is known."""
+    times = [
+        (limit.first_violated, limit.by or limit.vehicle)
+        for limit in metrics.limits
+        if (limit.metric, limit.limit) == (requirement.metric, requirement.limit)
+        and requirement.vehicle in (None, limit.vehicle)
+        and math.isfinite(limit.first_violated)
+    ]
+    return min(times, key=lambda item: item[0], default=(None, None))
 
 
 def is_met(flight: Flight, verdicts: Sequence[Verdict]) -> bool | None:
@@ -86,6 +123,7 @@ def summarize(
         "flown": _plain(flight.flown),
         "wall_seconds": _plain(flight.wall_seconds),
         "requirements": [_requirement(verdict) for verdict in verdicts],
+        "events": [event._asdict() for event in flight.events],
         "fleet": _numbers(fleet),
         "vehicles": {name: _numbers(flight.metrics.vehicles.get(name, {})) for name in flight.vehicle_names},
         "units": {name: METRICS[name].unit for name in names},
@@ -141,4 +179,5 @@ def _plain(value: float, is_count: bool = False) -> float | int | None:
 
 def _requirement(verdict: Verdict) -> dict[str, Any]:
     plain = verdict._asdict()
-    return plain | {"wanted": _plain(verdict.wanted), "got": _plain(verdict.got)}
+    numbers = {key: _plain(plain[key]) for key in ("wanted", "got", "margin")}
+    return plain | numbers

@@ -9,7 +9,20 @@ from typing import Any
 
 from cardume.errors import MissionError, UnitError
 from cardume.missions.catalog import Context
-from cardume.missions.schema import File, Graph, Kind, Name, Quantity, Text, Whole, Word
+from cardume.missions.schema import (
+    MOST_PROFILE_POINTS,
+    PROFILE_UNITS,
+    File,
+    Graph,
+    Kind,
+    Name,
+    Profile,
+    Profiled,
+    Quantity,
+    Text,
+    Whole,
+    Word,
+)
 from cardume.missions.source import nearest_file
 from cardume.missions.tree import SAFE_NAME, Node
 from cardume.missions.wording import unknown, wanted
@@ -43,6 +56,36 @@ def _quantity(kind: Quantity, node: Node, _context: Context) -> float:
     if not kind.bounds.contain(value):
         raise refused(kind, node)
     return value
+
+
+@read_value.register
+def _profiled(kind: Profiled, node: Node, context: Context) -> float | Profile:
+    if not isinstance(node.value, dict):
+        return _quantity(kind, node, context)
+    for key, inner in node.value.items():
+        if key not in ("profile", "points"):
+            raise inner.error(unknown("there is no such key in a profile", key, ["profile", "points"]))
+    over, points = node.value.get("profile"), node.value.get("points")
+    if over is None or points is None:
+        missing = "profile" if over is None else "points"
+        raise node.error(f"a profile lacks '{missing}'; must be {wanted(kind)}")
+    if not isinstance(over.value, str) or over.value not in PROFILE_UNITS:
+        raise over.error(unknown(f"given {over.given()}", str(over.value), list(PROFILE_UNITS)))
+    if not isinstance(points.value, list) or not 1 <= len(points.value) <= MOST_PROFILE_POINTS:
+        raise points.error(f"given {points.given()}; must be a list of 1 to {MOST_PROFILE_POINTS} points")
+    unit = PROFILE_UNITS[over.value]
+    read = [_profile_point(Quantity(unit), kind, item, context) for item in points.value]
+    for (before, _), (x, _), item in zip(read, read[1:], points.value[1:], strict=False):
+        if x <= before:
+            raise item.error(f"given {x:g} {unit} after {before:g} {unit}; each point must lie beyond the one before")
+    return Profile(over=over.value, points=tuple(read))
+
+
+def _profile_point(over: Quantity, kind: Quantity, item: Node, context: Context) -> tuple[float, float]:
+    if not isinstance(item.value, list) or len(item.value) != 2:
+        valid = f"[{'60 s' if over.unit == 's' else '60 m'}, the value there]"
+        raise item.error(f"given {item.given()}; a point is a pair, {valid}")
+    return _quantity(over, item.value[0], context), _quantity(kind, item.value[1], context)
 
 
 @read_value.register

@@ -53,6 +53,7 @@ def _numbers(kind: Kind, way: str, given: Node, per: str, read: Read) -> Uniform
     needed = {"uniform": "[low, high]", "normal": "[mean, standard deviation]", "linspace": "[first, last, count]"}[way]
     if len(given.value) != needed.count(",") + 1:
         raise given.error(f"given {len(given.value)} values; {way} needs {needed}")
+    kind = Quantity(kind.unit, kind.bounds, kind.in_ticks)  # a profile is no number to draw
     deviation = Quantity(kind.unit, NOT_NEGATIVE, fixed=True)
     kinds = {"uniform": (kind, kind), "normal": (kind, deviation), "linspace": (kind, kind, Whole(2, MOST_OPTIONS))}
     numbers = [_plain(inner, item, read) for inner, item in zip(kinds[way], given.value, strict=True)]

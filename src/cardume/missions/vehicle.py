@@ -7,12 +7,32 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cardume.missions.route import Angle, Meters, Point
-from cardume.missions.schema import Bounds, Default, Forms, Graph, Group, Laws, Name, Quantity, Shared, Word, fields_of
+from cardume.missions.schema import (
+    NOT_NEGATIVE,
+    POSITIVE,
+    Bounds,
+    Default,
+    Forms,
+    Graph,
+    Group,
+    Laws,
+    ListOf,
+    Name,
+    Profile,
+    Profiled,
+    Quantity,
+    Shared,
+    Word,
+    fields_of,
+)
 
 if TYPE_CHECKING:
     from cardume.missions.catalog import Context
 
 MetersPerSecond = Annotated[float, Quantity("m/s")]
+SecondsOrNone = Annotated[float | None, Quantity("s", POSITIVE)]
+DEPTHS = Bounds(0.0, 12_000.0)
+Depth = Quantity("m", DEPTHS)
 Topology = str | tuple[tuple[float, ...], ...]
 
 
@@ -66,6 +86,7 @@ class RelativeStart:
     cross_track: Annotated[Meters, "to starboard of the path"] = 0.0
     heading_error: Annotated[Angle, "clockwise from the path's course"] = 0.0
     speed: Annotated[MetersPerSecond, "through the water"] = 0.0
+    depth: Annotated[float | None, Depth, "left out: the depth to keep, or 0 where it dives first"] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,6 +97,7 @@ class AbsoluteStart:
     east: Annotated[Meters, "east of the origin"]
     heading: Annotated[Angle, "clockwise from north"] = 0.0
     speed: Annotated[MetersPerSecond, "through the water"] = 0.0
+    depth: Annotated[float | None, Depth, "left out: the depth to keep, or 0 where it dives first"] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,6 +139,7 @@ class Sensors:
     depth: Annotated[LawChoice | None, Laws("depth", words=NO_SENSOR), "depth, from pressure"] = None
     usbl: Annotated[LawChoice | None, Laws("usbl", words=NO_SENSOR), "where the others are, by sound"] = None
     dvl: Annotated[LawChoice | None, Laws("dvl", words=NO_SENSOR), "velocity, by sound"] = None
+    altimeter: Annotated[LawChoice | None, Laws("altimeter", words=NO_SENSOR), "altitude, by sound"] = None
     thruster_speed: Annotated[
         ThrusterSpeed | None, Group(ThrusterSpeed, words=NO_SENSOR), "shaft speed; `scale` is a of eq. (38)"
     ] = None
@@ -127,13 +150,81 @@ SILENT: Mapping[str, Any] = {"none": LawChoice(family="messaging", name="silent"
 
 
 def _default_sensors(values: Mapping[str, Any], context: Context) -> Any:
-    model, depth = values.get("model"), values.get("depth", 0.0)
-    kinds = context.catalog.default_sensors(getattr(model, "name", ""), depth != 0.0)
-    return kinds if isinstance(kinds, str) else {kind: {} for kind in kinds}
+    model, depth, altitude = values.get("model"), values.get("depth", 0.0), values.get("altitude")
+    kinds = context.catalog.default_sensors(getattr(model, "name", ""), depth != 0.0 or altitude is not None)
+    if isinstance(kinds, str):
+        return kinds
+    return {kind: {} for kind in (*kinds, *(("altimeter",) if altitude is not None else ()))}
 
 
 def _unless_alone(section: str, alone: str) -> Default:
     return Default(lambda _values, context: alone if len(context.fleet) == 1 else {})
+
+
+NOT_AT_ALL: Mapping[str, Any] = {"none": None}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dive:
+    """How a vehicle goes down before it sets out."""
+
+    tolerance: Annotated[float, Quantity("m", POSITIVE), "of the depth, within which it is down"] = 0.5
+    timeout: Annotated[SecondsOrNone, "after which it goes on all the same; left out: never"] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Gather:
+    """How a vehicle waits at its start for those it hears."""
+
+    radius: Annotated[float, Quantity("m", POSITIVE), "of its start, within which it is there"] = 2.0
+    timeout: Annotated[SecondsOrNone, "after which it goes without them; left out: never"] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Phases:
+    """What a vehicle does before and after its path."""
+
+    dive: Annotated[Dive | None, Group(Dive, words=NOT_AT_ALL), "first down, at its start"] = None
+    gather: Annotated[Gather | None, Group(Gather, words=NOT_AT_ALL), "then wait for the others"] = None
+    hold: Annotated[float | None, Quantity("s", NOT_NEGATIVE), "how long at the end before `end: surface`"] = None
+    circle: Annotated[
+        float | None, Quantity("m", POSITIVE), "radius on which it waits; left out: it holds its place"
+    ] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoundFence:
+    """A round geofence."""
+
+    centre: Annotated[Point, Group(Point), "of the circle"] = Point(north=0.0, east=0.0)
+    radius: Annotated[float, Quantity("m", POSITIVE), "that is not to be left"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PolygonFence:
+    """A geofence with corners."""
+
+    polygon: Annotated[tuple[Point, ...], ListOf(Group(Point)), "its corners, at least three, in order"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """What a vehicle is never to go beyond; each is required of the flight."""
+
+    depth: Annotated[float | None, Depth, "largest"] = None
+    altitude: Annotated[float | None, Quantity("m", NOT_NEGATIVE), "least height above the seabed"] = None
+    geofence: Annotated[
+        RoundFence | PolygonFence | None, Forms((RoundFence, PolygonFence)), "region not to be left"
+    ] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Abort:
+    """When a vehicle gives up: beyond one of its limits as it believes, or as said here."""
+
+    to: Annotated[str, Word(("surface", "hold")), "what it does then, where it is"] = "surface"
+    silence: Annotated[SecondsOrNone, "without hearing anybody"] = None
+    time: Annotated[SecondsOrNone, "since the start of the mission"] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -142,7 +233,10 @@ class Vehicle:
 
     name: Annotated[str, Name(fixed=True), "unique in the fleet"]
     model: Annotated[LawChoice, Laws("model", default="medusa", announces=True), Shared(), "how it moves"]
-    depth: Annotated[float, Quantity("m", Bounds(0.0, 12_000.0)), "to keep"] = 0.0
+    depth: Annotated[float | Profile, Profiled("m", DEPTHS), "to keep; a constant, or a profile of time or path"] = 0.0
+    altitude: Annotated[
+        float | None, Quantity("m", POSITIVE), "above the seabed to keep, instead of a depth; needs an altimeter"
+    ] = None
     offset: Annotated[Offset, Group(Offset), "its place in the formation"] = Offset()
     start: Annotated[
         RelativeStart | AbsoluteStart, Forms((RelativeStart, AbsoluteStart)), "where it is when the mission begins"
@@ -172,6 +266,9 @@ class Vehicle:
     ]
     autopilot: Annotated[LawChoice, Laws("autopilot"), Shared(), "from course and speed to forces"]
     end: Annotated[str, Word(("hold", "surface", "continue")), Shared(), "what it does at the end of the path"] = "hold"
+    phases: Annotated[Phases | None, Group(Phases, words=NOT_AT_ALL), Shared(), "before and after the path"] = None
+    limits: Annotated[Limits | None, Group(Limits, words=NOT_AT_ALL), Shared(), "never to be exceeded"] = None
+    abort: Annotated[Abort | None, Group(Abort, words=NOT_AT_ALL), Shared(), "when it gives up"] = None
 
 
 SHARED = {field.key: field for field in fields_of(Vehicle) if field.shared}

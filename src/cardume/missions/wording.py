@@ -15,6 +15,7 @@ from cardume.missions.schema import (
     Laws,
     ListOf,
     Name,
+    Profiled,
     Quantity,
     Requirements,
     Text,
@@ -40,6 +41,12 @@ def wanted(kind: Kind) -> str:
 def _quantity(kind: Quantity) -> str:
     example = f", as '{_example(kind)}'" if kind.unit else ""
     return f"a number{example}{_limits(kind.bounds, kind.unit)}"
+
+
+@wanted.register
+def _profiled(kind: Profiled) -> str:
+    example = f"[[0 s, {_example(kind)}], [60 s, {_example(kind)}]]"
+    return f"{_quantity(kind)}; or a profile, as {{profile: time, points: {example}}}, or over the path in meters"
 
 
 @wanted.register

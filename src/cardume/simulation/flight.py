@@ -57,8 +57,29 @@ METRICS = {
         "m", "largest difference of two true coordination states, root mean square", of_fleet_only=True
     ),
     "coordination_error_max": Metric("m", "largest difference of two true coordination states", of_fleet_only=True),
+    "depth_max": Metric("m", "largest true depth"),
+    "altitude_min": Metric("m", "smallest true height above the seabed", "at least"),
+    "geofence_margin_min": Metric("m", "smallest true distance inside the geofence, < 0 outside", "at least"),
     "separation_min": Metric("m", "smallest distance of two vehicles", "at least", of_fleet_only=True),
 }
+
+
+class Limit(NamedTuple):
+    """A value that a metric of a vehicle was not to exceed, and when it first did."""
+
+    metric: str
+    vehicle: str | None  # None: of the fleet
+    limit: float
+    first_violated: float = np.nan  # [s] NaN: never
+    by: str | None = None  # the vehicles, where the metric is of the fleet
+
+
+class Event(NamedTuple):
+    """Something that happened to a vehicle, as it saw it itself or, of a limit, as it truly was."""
+
+    time: float  # [s]
+    vehicle: str
+    what: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,6 +88,7 @@ class Metrics:
 
     fleet: Mapping[str, float] = field(default_factory=dict)
     vehicles: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    limits: tuple[Limit, ...] = ()
 
     def worst(self, name: str) -> tuple[float, str | None]:
         """The fleet's value of a metric, which is its worst vehicle's, and that vehicle.
@@ -108,3 +130,4 @@ class Flight:
     wall_seconds: float = np.nan  # [s] that flying took, without compilation; NaN: not known
     reference_path: np.ndarray  # (point, 2) [m] north, east along the formation's reference path
     own_paths: tuple[np.ndarray, ...]  # per vehicle (point, 2) [m] north, east along its own path
+    events: tuple[Event, ...] = ()  # in the order of time

@@ -5,9 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from cardume.onboard.mind import NEVER
 from cardume.paths.table import LENGTH_REFERENCE
-from cardume.simulation.flight import Metrics
+from cardume.simulation.flight import Limit, Metrics
 from cardume.simulation.fly import Flown
+from cardume.simulation.safety import FAR, Safety
 from cardume.simulation.score import (
     BINS,
     CROSS_TRACK,
@@ -46,9 +48,12 @@ def metrics_of(flown: Flown) -> Metrics:
             found |= _of_formation(formation, histograms[place[k]])
         if plan.rules.swath > 0.0:
             found["swath_coverage"] = 100.0 * min(1.0, score.swept / length)
+        if plan.is_watched:
+            found |= _of_safety(_record(row, Safety))
         vehicles[vehicle.name] = found
     fleet = FleetScore(*flown.tables.fleet_score[: FLEET_SCORES.width].tolist())
-    return Metrics(fleet=_of_fleet(fleet) if size > 1 else {}, vehicles=vehicles)
+    limits = (*limits_of(flown), *separation_of(flown)) if plan.is_watched else ()
+    return Metrics(fleet=_of_fleet(fleet) if size > 1 else {}, vehicles=vehicles, limits=limits)
 
 
 def _record(row: np.ndarray, record: Any) -> Any:
@@ -81,6 +86,42 @@ def _of_formation(formation: Formation, histograms: np.ndarray) -> dict[str, flo
         "formation_error_p95": percentile(histograms[FORMATION], 0.95),
         "formation_error_rms_relative": _rms(formation.relative_squares, formation.time),
     }
+
+
+def _of_safety(safety: Safety) -> dict[str, float]:
+    found = {"depth_max": safety.depth_max}
+    if safety.altitude_min < FAR:
+        found["altitude_min"] = safety.altitude_min
+    if safety.fence_margin_min < FAR:
+        found["geofence_margin_min"] = safety.fence_margin_min
+    return found
+
+
+def limits_of(flown: Flown) -> list[Limit]:
+    """The limits of every vehicle, and when it first went beyond each, in the order of the mission's vehicles."""
+    plan = flown.plan
+    rows = flown.tables.scores.reshape(len(plan.vehicles), SCORES.width)
+    place = {vehicle: row for row, vehicle in enumerate(plan.order)}
+    found = []
+    for k, vehicle in enumerate(plan.vehicles):
+        s = _record(rows[place[k]], Safety)
+        kinds = [
+            ("depth_max", s.depth_limit, s.too_deep),
+            ("altitude_min", s.altitude_limit, s.too_low),
+            ("geofence_margin_min", s.fence_limit, s.outside),
+        ]
+        found += [Limit(m, vehicle.name, limit, first) for m, limit, first in kinds if abs(limit) < NEVER]
+    return found
+
+
+def separation_of(flown: Flown) -> list[Limit]:
+    """The distance that vehicles are to keep, and who first did not; none where none is required."""
+    plan, fleet = flown.plan, FleetScore(*flown.tables.fleet_score[: FLEET_SCORES.width].tolist())
+    if plan.separation <= 0.0:
+        return []
+    names = [plan.vehicles[plan.order[int(k)]].name for k in (fleet.one, fleet.other)]
+    by = " and ".join(sorted(names)) if math.isfinite(fleet.too_near) else None
+    return [Limit("separation_min", None, plan.separation, fleet.too_near, by)]
 
 
 def _of_talk(talk: Talk) -> dict[str, float]:
