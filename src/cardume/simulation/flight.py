@@ -69,7 +69,7 @@ class Limit(NamedTuple):
 
     metric: str
     vehicle: str | None  # None: of the fleet
-    limit: float
+    limit: float  # [any] in the metric's unit
     first_violated: float = np.nan  # [s] NaN: never
     by: str | None = None  # the vehicles, where the metric is of the fleet
 
