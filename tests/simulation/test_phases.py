@@ -53,7 +53,10 @@ def test_without_phases_a_vehicle_is_on_its_path_and_then_holds() -> None:
 
 
 def test_a_fleet_gathers_and_goes_together_by_what_it_is_told() -> None:
-    flight = flown(FLEET + "phases: {dive: {}, gather: {radius: 1 m}}\nend: surface\nacoustics: {channel: bernoulli, loss: 0, delay: 0.4 s}\n")
+    flight = flown(
+        FLEET
+        + "phases: {dive: {}, gather: {radius: 1 m}}\nend: surface\nacoustics: {channel: bernoulli, loss: 0, delay: 0.4 s}\n"
+    )
     starts = [happened(flight, name, "sets out") for name in flight.vehicle_names]
     last = happened(flight, "late", "is at its start")
     assert last > 5.0
@@ -82,7 +85,9 @@ def test_a_lone_vehicle_needs_nobody() -> None:
 
 
 def test_a_dive_that_does_not_end_is_given_up_after_its_timeout() -> None:
-    ahrs_only = "vehicles: [{name: alone, depth: 5 m, sensors: {ahrs: {}, gnss: {deepest: 50 m}, thruster_speed: {}}}]\n"
+    ahrs_only = (
+        "vehicles: [{name: alone, depth: 5 m, sensors: {ahrs: {}, gnss: {deepest: 50 m}, thruster_speed: {}}}]\n"
+    )
     flight = flown(ahrs_only + "phases: {dive: {timeout: 7 s}}\n")  # no depth is measured
     assert phases(flight, "alone")[:2] == [DIVE, GO]
     assert happened(flight, "alone", "not down within") == pytest.approx(7.1, abs=0.11)
@@ -106,21 +111,25 @@ def test_a_circle_is_kept_while_it_waits() -> None:
 # ---- giving up -------------------------------------------------------------------------------------------------------
 
 
+ROUND = "limits: {geofence: {centre: {north: 0 m, east: 0 m}, radius: 6 m}}\n"
+SQUARE = """
+limits:
+  geofence:
+    polygon: [{north: -5, east: -9}, {north: -5, east: 9}, {north: 8, east: 9}, {north: 8, east: -9}]
+"""
+RISING = "bathymetry: {type: slope, depth: 12 m, gradient: -0.5}\n"
+
+
 @pytest.mark.parametrize(
     ("lines", "reason", "at"),
     [
         ("limits: {depth: 4 m}\nabort: {to: surface}\n", "depth limit", (0.0, 0.2)),
-        ("limits: {geofence: {centre: {north: 0 m, east: 0 m}, radius: 6 m}}\nabort: {to: hold}\n", "geofence", (12, 13)),
-        (
-            "limits: {geofence: {polygon: [{north: -5 m, east: -9 m}, {north: -5 m, east: 9 m}, {north: 8 m, east: 9 m},"
-            " {north: 8 m, east: -9 m}]}}\nabort: {}\n",
-            "geofence",
-            (16, 17),
-        ),
+        (ROUND + "abort: {to: hold}\n", "geofence", (12.0, 13.0)),
+        (SQUARE + "abort: {}\n", "geofence", (16.0, 17.0)),
         ("abort: {time: 11 s}\n", "time", (11.0, 11.2)),
-        ("bathymetry: {type: slope, depth: 12 m, gradient: -0.5}\nlimits: {altitude: 4 m}\nabort: {}\n", "altitude", (12, 13)),
+        (RISING + "limits: {altitude: 4 m}\nabort: {}\n", "altitude", (12.0, 13.0)),
     ],
-)  # fmt: skip
+)
 def test_it_gives_up(lines: str, reason: str, at: tuple[float, float]) -> None:
     flight = flown("vehicles: [{name: alone, start: {depth: 5 m, speed: 0.5 m/s}, depth: 5 m}]\n" + lines)
     assert phases(flight, "alone") in ([GO, ABORT], [ABORT])
@@ -155,4 +164,4 @@ def test_nobody_knows_that_another_is_ready_before_a_message_says_so() -> None:
     fast = flown(FLEET + "phases: {gather: {radius: 20 m}}\nacoustics: {channel: bernoulli, loss: 0, delay: 5 s}\n")
     assert happened(fast, "hub", "knows") >= 5.0
     assert happened(fast, "near", "sets out") >= 10.0
-    assert phases(fast, "near") [:3] == [READY, ASSEMBLED, GO]
+    assert phases(fast, "near")[:3] == [READY, ASSEMBLED, GO]

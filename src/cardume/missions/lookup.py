@@ -19,6 +19,7 @@ from cardume.missions.schema import (
     ListOf,
     Quantity,
     Text,
+    Word,
     fields_of,
     records_of,
 )
@@ -38,6 +39,12 @@ TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
     ),
     ("current", "sheared"): (
         Field("profile", ListOf(Group(CurrentPoint), fixed=True), MISSING, None, False, "velocities by depth"),
+    ),
+    ("bathymetry", "gridded"): (
+        Field("file", File(fixed=True), MISSING, None, False, "CF NetCDF or ESRI ASCII grid of depth or elevation"),
+        Field("variable", Text(fixed=True), None, None, False, "of NetCDF, that holds the depth"),
+        Field("positive", Word(("up", "down"), fixed=True), None, None, False, "down: depths, up: elevations"),
+        Field("coordinates", Word(("geographic", "local"), fixed=True), None, None, False, "degrees, or meters"),
     ),
 }
 """What laws take beside numbers: texts and lists, which compiled code does not see."""

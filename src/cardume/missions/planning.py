@@ -88,7 +88,7 @@ def make_plan(mission: Mission, catalog: Catalog) -> Planned:
     paths = [_own_path(mission, vehicle, reference, speed) for vehicle in mission.vehicles]
     water, field = _current(mission, origin, paths, catalog)
     vehicles = tuple(_vehicle(mission, v, p, water, catalog) for v, p in zip(mission.vehicles, paths, strict=True))
-    seabed = read_seabed(mission, origin)
+    seabed = read_seabed(mission, origin, [outline(path, 20.0)[:, 1:] for path in paths])
     plan = Plan(
         vehicles,
         np.asarray(mission.adjacency),
