@@ -106,7 +106,7 @@ def _quantity(kind: Quantity, vary: bool = True) -> st.SearchStrategy[Any]:
 @_written.register
 def _profiled(kind: Profiled, vary: bool = True) -> st.SearchStrategy[Any]:
     xs = st.lists(st.integers(0, 900), min_size=1, max_size=4, unique=True).map(sorted)
-    pairs = xs.flatmap(lambda x: st.tuples(*[_number(kind)] * len(x)).map(lambda y: [list(p) for p in zip(x, y, strict=True)]))
+    pairs = xs.flatmap(lambda x: st.tuples(*[st.tuples(st.just(k), _number(kind)).map(list) for k in x]).map(list))
     profile = st.fixed_dictionaries({"profile": st.sampled_from(["time", "path"]), "points": pairs})
     return st.one_of(_number(kind), profile)
 

@@ -53,10 +53,8 @@ def test_without_phases_a_vehicle_is_on_its_path_and_then_holds() -> None:
 
 
 def test_a_fleet_gathers_and_goes_together_by_what_it_is_told() -> None:
-    flight = flown(
-        FLEET
-        + "phases: {dive: {}, gather: {radius: 1 m}}\nend: surface\nacoustics: {channel: bernoulli, loss: 0, delay: 0.4 s}\n"
-    )
+    delayed = "acoustics: {channel: bernoulli, loss: 0, delay: 0.4 s}\n"
+    flight = flown(FLEET + "phases: {dive: {}, gather: {radius: 1 m}}\nend: surface\n" + delayed)
     starts = [happened(flight, name, "sets out") for name in flight.vehicle_names]
     last = happened(flight, "late", "is at its start")
     assert last > 5.0

@@ -5,6 +5,7 @@ for finding in check_mission(mission):
 """
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 
 from cardume.missions.available import catalog
@@ -12,6 +13,7 @@ from cardume.missions.catalog import Catalog
 from cardume.missions.checks import (
     coordination,
     current,
+    depths,
     geometry,
     guidance,
     messages,
@@ -25,6 +27,8 @@ from cardume.missions.checks.finding import LEVELS, Finding
 from cardume.missions.checks.scene import Scene, make_scene
 from cardume.missions.checks.variants import is_too_varied, variants
 from cardume.missions.mission import Mission
+from cardume.missions.planning import make_plan
+from cardume.missions.schema import Profile
 
 __all__ = ["CHECKS", "Finding", "check_mission"]
 
@@ -54,6 +58,11 @@ CHECKS: tuple[Check, ...] = (
     messages.check_waiting,
     messages.check_load,
     messages.check_slots,
+    depths.check_slope,
+    depths.check_aground,
+    depths.check_echo,
+    depths.check_limits,
+    depths.check_dive,
     timing.check_duration,
     timing.check_steps,
     path_file.check_path_file,
@@ -91,4 +100,19 @@ def _check(mission: Mission, known: Catalog) -> list[tuple[str, Finding]]:
     if planned is None:
         return [("planning", finding) for finding in problems]
     scene = make_scene(mission, planned)
-    return [(check.__qualname__ + check.__module__, finding) for check in CHECKS for finding in check(scene)]
+    found = [(check.__qualname__ + check.__module__, finding) for check in CHECKS for finding in check(scene)]
+    return [*found, *_at_extremes(mission, known)]
+
+
+def _at_extremes(mission: Mission, known: Catalog) -> list[tuple[str, Finding]]:
+    """What is too fast or too slow at the fastest and the slowest of a v_L over time; else its mean is looked at."""
+    profile, found = mission.formation.speed, list[tuple[str, Finding]]()
+    if not isinstance(profile, Profile) or profile.over != "time":
+        return found
+    for speed, word in ((max(profile.values), "fastest"), (min(profile.values), "slowest")):
+        steady = replace(mission, formation=replace(mission.formation, speed=speed))
+        scene = make_scene(steady, make_plan(steady, known))
+        for check in (speeds.check_fastest, speeds.check_slowest, speeds.check_overtaken):
+            told = [replace(f, message=f"{f.message} (at the {word} of formation.speed)") for f in check(scene)]
+            found += [(check.__qualname__ + word, replace(finding, suggestion="")) for finding in told]
+    return found

@@ -38,7 +38,9 @@ class Fixes:
 def has_gnss(vehicle: VehiclePlan) -> bool:
     """Whether a vehicle's GNSS works at the depth that it keeps."""
     gnss = vehicle.laws.get("gnss")
-    return gnss is not None and (not has_parameter(gnss, "deepest") or vehicle.setup.depth <= gnss.value("deepest"))
+    if gnss is None or not has_parameter(gnss, "deepest"):
+        return gnss is not None
+    return not vehicle.orders.keeps_altitude and vehicle.setup.depth <= gnss.value("deepest")
 
 
 def has_parameter(choice: Choice, name: str) -> bool:

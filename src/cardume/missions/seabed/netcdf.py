@@ -67,7 +67,7 @@ def _read(file: Any, path: Path, window: Window, asked: tuple[str | None, Positi
         raise DataError(f"{path}: the part around the origin has more than {MOST_NUMBERS:,} numbers; cut the file")
     picks: list[Any] = [0] * variable.ndim
     picks[row], picks[column] = np.sort(latitudes.picks), np.sort(longitudes.picks)
-    part = np.ma.filled(np.ma.asarray(variable[tuple(picks)], float), np.nan)
+    part: np.ndarray = np.ma.filled(np.ma.asarray(variable[tuple(picks)], float), np.nan)
     values = part if row < column else part.T
     back = np.ix_(*(np.searchsorted(np.sort(p), p) for p in (latitudes.picks, longitudes.picks)))
     depths = as_depths(_factor(variable, path) * values[back], asked[1] or _direction(name, variable))
@@ -76,7 +76,7 @@ def _read(file: Any, path: Path, window: Window, asked: tuple[str | None, Positi
 
 
 def _found(file: Any, path: Path) -> str:
-    grids = {n: v for n, v in file.variables.items() if v.ndim >= 2}
+    grids: dict[str, Any] = {n: v for n, v in file.variables.items() if v.ndim >= 2}
     named = [n for n, v in grids.items() if text_of(v, "standard_name") in DOWN | UP]
     usual = [n for n in grids if n.lower() in NAMES]
     found = named or usual
