@@ -147,7 +147,7 @@ def test_silence_ends_a_mission_and_the_others_go_on_without_it() -> None:
 
 def test_limits_are_judged_by_the_truth_with_time_name_and_margin() -> None:
     fence = "limits: {depth: 6 m, geofence: {centre: {north: 0 m, east: 0 m}, radius: 8 m}}\n"
-    flight = flown(FLEET + fence + "require: {separation_min: 4 m}\n")
+    flight = flown(FLEET + fence + "require: {separation_min: 6 m}\n")
     depth, geofence, separation = sorted(judge((), flight.metrics), key=lambda v: v.metric)
     assert (depth.met, depth.margin, depth.first_violated) == (True, 1.0, None)
     assert not geofence.met
