@@ -37,7 +37,7 @@ def integral(points: list[tuple[float, float]], end: float) -> float:
 
 LINE = "{type: line, length: 200 m}"
 CIRCLE = (
-    "{type: circle, centre: {north: 0, east: 0}, radius: 15 m}"  # without joints, which fall at any point of a tick
+    "{type: circle, centre: {north: 0, east: 0}, radius: 15 m}"  # no joint within a tick
 )
 
 
