@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from flying import fly_text, limit, value_at
 
@@ -36,9 +37,7 @@ def integral(points: list[tuple[float, float]], end: float) -> float:
 
 
 LINE = "{type: line, length: 200 m}"
-CIRCLE = (
-    "{type: circle, centre: {north: 0, east: 0}, radius: 15 m}"  # no joint within a tick
-)
+CIRCLE = "{type: circle, centre: {north: 0, east: 0}, radius: 15 m}"  # no joint within a tick
 
 
 def mission(tick: float, points: list[tuple[float, float]], path: str) -> str:
@@ -67,3 +66,58 @@ def test_vehicles_that_start_together_stay_together(path: str, apart: float) -> 
     assert np.ptp(states, axis=1).max() < apart
     assert abs(flight.channels["speed_correction"]).max() < apart
     assert np.ptp(np.diff(states[:, 0])) > 0.1  # it did change
+
+
+# ---- v_L along the path ----------------------------------------------------------------------------------------------
+
+ALONG = [(4.0, 0.3), (13.0, 0.6), (19.0, 0.35)]
+
+
+def time_at(gamma: float, points: list[tuple[float, float]]) -> float:
+    """t = integral of d gamma / v(gamma): ln(v_2 / v_1) / slope where v is a straight line."""
+    places, values = zip(*points, strict=True)
+    knots = np.unique([0.0, gamma, *(p for p in places if 0.0 < p < gamma)])
+    v = np.interp(knots, places, values)
+    total = 0.0
+    for g1, g2, v1, v2 in zip(knots, knots[1:], v, v[1:], strict=False):
+        slope = (v2 - v1) / (g2 - g1)
+        total += np.log(v2 / v1) / slope if slope else (g2 - g1) / v1
+    return float(total)
+
+
+def gamma_at(time: float, points: list[tuple[float, float]]) -> float:
+    return float(brentq(lambda gamma: time_at(gamma, points) - time, 0.0, 100.0, xtol=1e-12))
+
+
+def along(tick: float, points: list[tuple[float, float]], path: str) -> str:
+    written = [[f"{g!r} m", f"{v!r} m/s"] for g, v in points]
+    text = MISSION.format(tick=tick, points=str(written).replace("'", ""), path=path)
+    return text.replace("profile: time", "profile: path")
+
+
+@pytest.mark.parametrize("path", [LINE, CIRCLE])
+@pytest.mark.parametrize(
+    "points", [ALONG, [(2.0, 0.5), (25.0, 0.25)], [(0.0, 0.4)]], ids=["up and down", "slower", "constant"]
+)
+def test_along_the_path_gamma_solves_its_own_equation(points: list[tuple[float, float]], path: str) -> None:
+    def state(tick: float) -> float:
+        return value_at(fly_text(along(tick, points, path)), "coordination_state", 50.0, 1)
+
+    found, _ = limit(state, (0.1, 0.05, 0.025))
+    assert found == pytest.approx(gamma_at(50.0, points), rel=2e-5)
+
+
+def test_all_read_v_l_at_the_formations_point() -> None:
+    flight = fly_text(along(0.1, ALONG, LINE))
+    states = flight.channels["coordination_state"]
+    assert np.ptp(states, axis=1).max() < 1e-9  # also the one that is 3 m ahead on the path
+
+
+def test_a_neighbor_elsewhere_is_predicted_with_v_l_there() -> None:
+    """The one is 12 m ahead, where v_L is twice as large; it is heard every 12 s, and nothing brings them together."""
+    text = along(0.1, [(6.0, 0.3), (6.5, 0.6)], LINE).replace("period: 1 s", "period: 12 s")
+    text = text.replace("gain: 0.15 m/s", "gain: 1e-9 m/s").replace("ahead: 3 m", "ahead: 0 m")
+    flight = fly_text(text.replace("along_track: 3 m", "along_track: 12 m"))
+    heard = flight.times > 1.0
+    believed = flight.neighbor_state_estimate[heard, 0, 2]
+    assert abs(believed - flight.channels["coordination_state"][heard, 2]).max() < 0.1

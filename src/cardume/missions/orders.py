@@ -30,12 +30,12 @@ def order_book(mission: Mission, vehicle: Vehicle, path: np.ndarray) -> OrderBoo
     """
     _check(mission, vehicle)
     speed, depth = mission.formation.speed, vehicle.depth
-    is_paced = isinstance(speed, Profile) and speed.over == "time"
     fence = vehicle.limits.geofence if vehicle.limits else None
     return OrderBook(
         _orders(vehicle),
-        pace=cast(Profile, speed).points if is_paced else (),
-        varies_along=not is_paced and varies_along(path),
+        pace=speed.points if isinstance(speed, Profile) else (),
+        pace_over=cast(Over, speed.over) if isinstance(speed, Profile) else "time",
+        varies_along=speed.over == "path" if isinstance(speed, Profile) else varies_along(path),
         depth=depth.points if isinstance(depth, Profile) else (),
         depth_over=cast(Over, depth.over) if isinstance(depth, Profile) else "time",
         keeps_altitude=vehicle.altitude is not None,
@@ -50,8 +50,8 @@ def varies_along(path: np.ndarray) -> bool:
     Args:
         path: (n,) path table.
     """
-    rows = path[table.HEADER_WIDTH :].reshape(-1, table.SEGMENT_WIDTH)
-    return bool(np.ptp(rows[:, table.SPEED]) > 0.0)
+    rows = table.rows_on_path(path)
+    return bool(np.ptp(rows[:, table.SPEED]) > 0.0 or rows[:, table.GAINED_SPEED :].any())
 
 
 def _orders(vehicle: Vehicle) -> Orders:

@@ -10,9 +10,19 @@ LONG_AGO = -1e9  # [s] before any mission
 NEVER = 1e9  # [s] after any mission; [m] beyond any depth
 
 # The whole numbers of `Mind.features`: what of phases.py, pace.py and depths.py a vehicle's mission asks for.
-ORDERS_START, PACE_POINTS, VARIES_ALONG, DEPTH_OVER, DEPTH_POINTS, KEEPS_ALTITUDE, HAS_PHASES, FENCE_CORNERS = range(8)
-NUM_FEATURES = 8
-OVER_TIME, OVER_PATH = 1, 2  # values of DEPTH_OVER; 0: a constant depth
+(
+    ORDERS_START,
+    PACE_OVER,
+    PACE_POINTS,
+    VARIES_ALONG,
+    DEPTH_OVER,
+    DEPTH_POINTS,
+    KEEPS_ALTITUDE,
+    HAS_PHASES,
+    FENCE_CORNERS,
+    NUM_FEATURES,
+) = range(10)
+OVER_TIME, OVER_PATH = 1, 2  # values of PACE_OVER and DEPTH_OVER; 0: no profile
 
 
 class Setup(NamedTuple):
@@ -133,7 +143,7 @@ class Mind(NamedTuple):
 
     book: LawBook
     own: Rows  # the records of OWN
-    orders: Rows  # Orders, then the points of v_L over time, of depth, and the corners of the geofence
+    orders: Rows  # Orders, then the points of v_L, of depth, and the corners of the geofence
     features: Any  # Ints (NUM_FEATURES,)
     others: Rows  # (vehicle, Acquaintance)
     paths: Rows  # path tables of all vehicles
@@ -223,7 +233,7 @@ def neighbors_of(mind: Mind, vehicle: int) -> Any:
 
 @compiled
 def pace_points(mind: Mind) -> Rows:
-    """The points of v_L over time."""
+    """The points of the profile of v_L."""
     return at(mind.orders, ORDERS_WIDTH)
 
 

@@ -1,8 +1,17 @@
-"""The speed v_L of the formation, where it is no constant: over time by the clock, along the path by its table."""
+"""The speed v_L of the formation where it is no constant: over time by the clock, along the path where it is."""
 
 from cardume.compiler import compiled, load, where
 from cardume.maths import interpolate
-from cardume.onboard.mind import PACE_POINTS, VARIES_ALONG, Acquaintance, Mind, pace_points, path_of
+from cardume.onboard.mind import (
+    OVER_PATH,
+    PACE_OVER,
+    PACE_POINTS,
+    VARIES_ALONG,
+    Acquaintance,
+    Mind,
+    pace_points,
+    path_of,
+)
 from cardume.paths.projection import formation_speed
 from cardume.paths.table import REFERENCE_START, segment_at
 from cardume.signals import PathError
@@ -10,7 +19,9 @@ from cardume.signals import PathError
 
 @compiled
 def keep_pace(mind: Mind, error: PathError, time: float) -> PathError:
-    """The path error with the v_L of now, where the mission gives it over time.
+    """The path error with the v_L of here and now, where the mission gives a profile of it.
+
+    Along the path it is read at the formation's point, path_parameter, so that vehicles side by side agree.
 
     Args:
         mind: of the vehicle.
@@ -18,8 +29,10 @@ def keep_pace(mind: Mind, error: PathError, time: float) -> PathError:
         time: [s] since the start of the mission, which all vehicles know alike.
     """
     speed = error.speed_profile
-    if load(mind.features, PACE_POINTS) > 0:
-        speed = interpolate(pace_points(mind), load(mind.features, PACE_POINTS), time + 0.0 * speed)
+    if load(mind.features, PACE_OVER) > 0:
+        is_along = load(mind.features, PACE_OVER) == OVER_PATH
+        x = error.path_parameter if is_along else time + 0.0 * speed
+        speed = interpolate(pace_points(mind), load(mind.features, PACE_POINTS), x)
     return PathError(
         error.path_course,
         error.curvature,
@@ -31,6 +44,7 @@ def keep_pace(mind: Mind, error: PathError, time: float) -> PathError:
         error.arc_length,
         error.finished,
         error.speed,
+        error.path_speed,
         error.path,
     )
 
@@ -48,5 +62,8 @@ def pace_of_neighbor(mind: Mind, known: Acquaintance, error: PathError) -> float
     if load(mind.features, VARIES_ALONG) > 0:
         path = path_of(mind, mind.me)
         state = where(known.predicted == known.predicted, known.predicted, error.path_parameter)
-        speed = formation_speed(path, segment_at(path, state, REFERENCE_START), state)
+        if load(mind.features, PACE_OVER) == OVER_PATH:
+            speed = interpolate(pace_points(mind), load(mind.features, PACE_POINTS), state)
+        else:
+            speed = formation_speed(path, segment_at(path, state, REFERENCE_START), state)
     return speed

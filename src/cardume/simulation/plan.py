@@ -35,7 +35,8 @@ class OrderBook:
 
     Attributes:
         orders: numbers.
-        pace: [s], [m/s] points of v_L over time; none: v_L is that of the path's table.
+        pace: [s] or [m], [m/s] points of v_L; none: it is that of the path's table.
+        pace_over: what the first of each pair is.
         varies_along: whether v_L differs along the path.
         depth: [s] or [m], [m] points of the depth to keep; none: it is a constant.
         depth_over: what the first of each pair is.
@@ -46,6 +47,7 @@ class OrderBook:
 
     orders: Orders = Orders()
     pace: tuple[tuple[float, float], ...] = ()
+    pace_over: Literal["time", "path"] = "time"
     varies_along: bool = False
     depth: tuple[tuple[float, float], ...] = ()
     depth_over: Literal["time", "path"] = "time"
@@ -64,9 +66,10 @@ class OrderBook:
         Args:
             start: [-] where in the table of orders its numbers begin.
         """
-        over = {"time": OVER_TIME, "path": OVER_PATH}[self.depth_over] if self.depth else 0
-        flags = int(self.keeps_altitude), int(self.has_phases)
-        return [start, len(self.pace), int(self.varies_along), over, len(self.depth), *flags, len(self.fence)]
+        over = {"time": OVER_TIME, "path": OVER_PATH}
+        pace = over[self.pace_over] if self.pace else 0, len(self.pace), int(self.varies_along)
+        depth = over[self.depth_over] if self.depth else 0, len(self.depth), int(self.keeps_altitude)
+        return [start, *pace, *depth, int(self.has_phases), len(self.fence)]
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,9 @@ from cardume.onboard.mind import (
     inbox_width,
 )
 from cardume.onboard.phases import DIVE, GATHER, GO, PHASES
+from cardume.paths.along import arc_length_at
 from cardume.paths.projection import point_at
-from cardume.paths.table import PathPlace, arc_length_at
+from cardume.paths.table import PathPlace
 from cardume.signals import Noise
 from cardume.simulation.air import NEVER
 from cardume.simulation.fleet import (

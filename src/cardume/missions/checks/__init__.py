@@ -105,9 +105,9 @@ def _check(mission: Mission, known: Catalog) -> list[tuple[str, Finding]]:
 
 
 def _at_extremes(mission: Mission, known: Catalog) -> list[tuple[str, Finding]]:
-    """What is too fast or too slow at the fastest and the slowest of a v_L over time; else its mean is looked at."""
+    """What is too fast or too slow at the fastest and the slowest of a profile of v_L; else its mean is looked at."""
     profile, found = mission.formation.speed, list[tuple[str, Finding]]()
-    if not isinstance(profile, Profile) or profile.over != "time":
+    if not isinstance(profile, Profile):
         return found
     for speed, word in ((max(profile.values), "fastest"), (min(profile.values), "slowest")):
         steady = replace(mission, formation=replace(mission.formation, speed=speed))
