@@ -38,6 +38,7 @@ WORLD = (
     "noise",
     "timings",
     "field",
+    "seabed",
     "outbox",
     "sending",
     "due",
@@ -71,6 +72,8 @@ def test_decide_needs_nothing_but_measurements_and_packets() -> None:
         ("kinematic/circle", ["duration=60 s"]),
         ("paper/figure-5", ["duration=60 s", "guidance.law=along_path", "neighbors.law=reported_speed", "end=surface"]),
         ("paper/figure-5", ["duration=60 s", "speed_reference=water", "position.law=direct"]),
+        ("gather-and-go", ["duration=100 s"]),
+        ("survey-at-altitude", ["duration=100 s", "abort.time=90 s"]),
     ],
 )
 def test_built_in_missions(name: str, overrides: Sequence[str]) -> None:

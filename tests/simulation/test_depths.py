@@ -95,8 +95,8 @@ def test_without_an_echo_it_keeps_the_depth_it_had(tmp_path: Path) -> None:
     """From 50 m to 80 m along the path the seabed falls out of the altimeter's reach."""
     norths = np.arange(-50.0, 401.0, 5.0)
     depths = np.where((norths > 47.0) & (norths < 83.0), 60.0, 14.0)
-    rows = "\n".join(f"{d} {d}" for d in depths[::-1])
-    header = f"ncols 2\nnrows {len(norths)}\nxllcenter -2.5\nyllcenter -50\ncellsize 5\n"
+    rows = "\n".join(" ".join([str(d)] * 9) for d in depths[::-1])
+    header = f"ncols 9\nnrows {len(norths)}\nxllcenter -20\nyllcenter -50\ncellsize 5\n"
     (tmp_path / "gap.asc").write_text(f"{header}{rows}\n")
     nearsighted = SURVEYOR % ", altimeter: {range: 11 m}"
     flight = flown("bathymetry: {type: gridded, file: gap.asc}\n" + nearsighted, directory=tmp_path)

@@ -26,7 +26,7 @@ from cardume.onboard.mind import (
     put_speech,
     sighting_in,
 )
-from cardume.onboard.pace import pace_of_neighbor
+from cardume.onboard.pace import pace_gained, pace_of_neighbor
 from cardume.onboard.phases import is_waiting, takes_part
 from cardume.paths.projection import project
 from cardume.paths.table import PathPlace
@@ -219,13 +219,14 @@ def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) ->
     """Predict where a vehicle is along the formation by now."""
     known = get_acquaintance(mind.others, vehicle)
     age = time - known.time_of_validity
-    nominal, correction = pace_of_neighbor(mind, known, error), known.correction
+    nominal, correction = pace_of_neighbor(mind, known, error, time), known.correction
     is_known = known.state == known.state
+    path_speed = known.path_speed + pace_gained(mind, known.time_of_validity, time)
     if load(mind.features, HAS_PHASES) > 0:
         waits = is_waiting(known.phase)
         nominal, correction = where(waits, 0.0, nominal), where(waits, 0.0, correction)
         is_known = is_known & takes_part(known.phase)
-    heard_last = NeighborReport(known.is_new, known.state, known.path_speed, age, nominal, correction)
+    heard_last = NeighborReport(known.is_new, known.state, path_speed, age, nominal, correction)
     predicted = predict(mind.book, vehicle, heard_last)
     after = Acquaintance(
         known.state,

@@ -4,6 +4,7 @@ from cardume.compiler import compiled, load, where
 from cardume.maths import interpolate
 from cardume.onboard.mind import (
     OVER_PATH,
+    OVER_TIME,
     PACE_OVER,
     PACE_POINTS,
     VARIES_ALONG,
@@ -50,15 +51,35 @@ def keep_pace(mind: Mind, error: PathError, time: float) -> PathError:
 
 
 @compiled
-def pace_of_neighbor(mind: Mind, known: Acquaintance, error: PathError) -> float:
-    """v_L [m/s] for another vehicle: of the formation's point where that one is, when v_L differs along the path.
+def pace_gained(mind: Mind, since: float, time: float) -> float:
+    """By how much [m/s] another vehicle has gone faster on the mean than when it said how fast it goes.
 
     Args:
         mind: whose view it is.
-        known: what it knows of the other.
+        since: [s] when it said so.
+        time: [s] now.
+    """
+    gained = 0.0 * since
+    if load(mind.features, PACE_OVER) == OVER_TIME:
+        points, count = pace_points(mind), load(mind.features, PACE_POINTS)
+        gained = 0.5 * (interpolate(points, count, time + gained) - interpolate(points, count, since))
+    return gained
+
+
+@compiled
+def pace_of_neighbor(mind: Mind, known: Acquaintance, error: PathError, time: float) -> float:
+    """v_L [m/s] that another vehicle went by since the last tick: of when that was, and of where it was.
+
+    Args:
+        mind: whose view it is.
+        known: what it knows of the other, predicted for the last tick.
         error: with its own v_L.
+        time: [s] since the start of the mission.
     """
     speed = error.speed_profile
+    if load(mind.features, PACE_OVER) == OVER_TIME:
+        before = time - mind.book.dt + 0.0 * speed
+        speed = interpolate(pace_points(mind), load(mind.features, PACE_POINTS), before)
     if load(mind.features, VARIES_ALONG) > 0:
         path = path_of(mind, mind.me)
         state = where(known.predicted == known.predicted, known.predicted, error.path_parameter)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,30 @@ from cardume.signals import Spot
 STEEPEST_SHARE = 0.8  # of the largest heave: the rest is for corrections
 
 
+FINEST = 2.0  # [m] between places at which the seabed is looked at
+MOST_PLACES = 20_000
+
+
+class Places(NamedTuple):
+    """Places along a vehicle's path, closer together than its stations."""
+
+    north: np.ndarray  # (n,) [m]
+    east: np.ndarray  # (n,) [m]
+    time: np.ndarray  # (n,) [s]
+    state: np.ndarray  # (n,) [m]
+
+
+def places_of(craft: Craft) -> Places:
+    """The stations of a vehicle, and more between them where they are far apart."""
+    s = craft.stations
+    gone = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(s.north), np.diff(s.east)))])
+    count = min(int(gone[-1] / FINEST) + 1, MOST_PLACES)
+    knots = np.union1d(gone, np.linspace(0.0, gone[-1], count + 1))
+    return Places(*(np.interp(knots, gone, column) for column in (s.north, s.east, s.time, s.state)))
+
+
 def seabed_at(scene: Scene, craft: Craft) -> np.ndarray | None:
-    """Depth of the seabed [m] at each station of a vehicle; None where the mission has none that is known here.
+    """Depth of the seabed [m] at each of a vehicle's places; None where the mission has none that is known here.
 
     Args:
         scene: with the table of a gridded seabed.
@@ -29,20 +51,34 @@ def seabed_at(scene: Scene, craft: Craft) -> np.ndarray | None:
         return None
     given = {p.name: choice.value(p.name) for p in choice.law.parameters}
     field: Any = scene.plan.seabed
-    places = zip(craft.stations.north, craft.stations.east, strict=True)
+    here = places_of(craft)
+    places = zip(here.north, here.east, strict=True)
     return np.array([choice.law.function(Spot(n, e, field), **given) for n, e in places], float)
 
 
 def wanted_depth(scene: Scene, craft: Craft) -> np.ndarray:
-    """The depth [m] that a vehicle is to keep at each of its stations; NaN where the seabed is not known."""
-    vehicle, stations = craft.vehicle, craft.stations
+    """The depth [m] that a vehicle is to keep at each of its places; NaN where the seabed is not known."""
+    vehicle, places = craft.vehicle, places_of(craft)
     seabed = seabed_at(scene, craft)
     if vehicle.altitude is not None and seabed is not None:
         return np.maximum(seabed - vehicle.altitude, 0.0)
     if isinstance(vehicle.depth, Profile):
-        x = stations.time if vehicle.depth.over == "time" else stations.state + vehicle.offset.ahead
+        x = places.time if vehicle.depth.over == "time" else places.state + vehicle.offset.ahead
         return np.array([vehicle.depth.at(float(value)) for value in x])
-    return np.full(len(stations.state), vehicle.depth)
+    return np.full(len(places.state), vehicle.depth)
+
+
+def fastest_change(scene: Scene, craft: Craft) -> float:
+    """How fast [m/s] the depth to keep changes at most."""
+    depth = craft.vehicle.depth
+    if craft.vehicle.altitude is None and isinstance(depth, Profile):
+        x, z = np.array(depth.points).T
+        rates = np.abs(np.diff(z) / np.diff(x))
+        per_second = 1.0 if depth.over == "time" else float(craft.stations.speed.max())
+        return float(rates.max(initial=0.0)) * per_second
+    steps = np.diff(places_of(craft).time)
+    rates = np.abs(np.diff(wanted_depth(scene, craft)))[steps > 0.0] / steps[steps > 0.0]
+    return float(np.nan_to_num(rates).max(initial=0.0))
 
 
 def check_slope(scene: Scene) -> Iterator[Finding]:
@@ -51,23 +87,22 @@ def check_slope(scene: Scene) -> Iterator[Finding]:
     w = |dz/ds| h v_L <= heave_max;   lag on a slope: w (1 / k + T), k the depth gain, T the filter's time constant.
     """
     for craft in scene.crafts:
-        autopilot, times = craft.law("autopilot"), craft.stations.time
+        autopilot = craft.law("autopilot")
         names = {p.name for p in autopilot.law.parameters}
-        if not {"heave_max", "depth_gain"} <= names or len(times) < 2:
+        if not {"heave_max", "depth_gain"} <= names:
             continue
-        steps = np.diff(times)
-        rates = np.abs(np.diff(wanted_depth(scene, craft)))[steps > 0.0] / steps[steps > 0.0]
-        rate, most = float(np.nan_to_num(rates).max(initial=0.0)), STEEPEST_SHARE * autopilot.value("heave_max")
+        rate, most = fastest_change(scene, craft), STEEPEST_SHARE * autopilot.value("heave_max")
         key = f"vehicles.{craft.name}.{'depth' if craft.vehicle.altitude is None else 'altitude'}"
         lag = rate * (1.0 / autopilot.value("depth_gain") + SMOOTHING)
-        slower = float(craft.stations.speed.max()) * most / rate if rate > 0.0 else math.inf
+        slower = 0.98 * float(craft.stations.speed.max()) * most / rate if rate > 0.0 else math.inf
+        by_time = isinstance(craft.vehicle.depth, Profile) and craft.vehicle.depth.over == "time"
         if rate > most:
             yield Finding(
                 "warning",
                 key,
                 f"{craft.name} is to change its depth by up to {show(rate, 'm/s')}; it dives and rises at most"
                 f" {show(autopilot.value('heave_max'), 'm/s')}, so it cannot follow",
-                at_most("formation.speed", slower, "m/s") if scene.sets_speed else "",
+                at_most("formation.speed", slower, "m/s") if scene.sets_speed and not by_time else "",
             )
         elif craft.vehicle.altitude is not None and lag >= craft.vehicle.altitude:
             yield Finding(
@@ -86,14 +121,14 @@ def check_aground(scene: Scene) -> Iterator[Finding]:
         if seabed is None:
             continue
         key = f"vehicles.{craft.name}.{'depth' if craft.vehicle.altitude is None else 'altitude'}"
-        room = seabed - wanted_depth(scene, craft)
+        room, here = seabed - wanted_depth(scene, craft), places_of(craft)
         if craft.vehicle.altitude is None and np.nanmin(room, initial=math.inf) <= 0.0:
             k = int(np.nanargmin(room))
             yield Finding(
                 "error",
                 key,
-                f"{craft.name} runs aground: at north {craft.stations.north[k]:.0f} m, east"
-                f" {craft.stations.east[k]:.0f} m the seabed is {show(seabed[k], 'm')} deep, and it is to keep"
+                f"{craft.name} runs aground: at north {here.north[k]:.0f} m, east"
+                f" {here.east[k]:.0f} m the seabed is {show(seabed[k], 'm')} deep, and it is to keep"
                 f" {show(seabed[k] - room[k], 'm')}",
                 at_most(key, 0.9 * float(np.nanmin(seabed)), "m"),
             )
@@ -103,8 +138,8 @@ def check_aground(scene: Scene) -> Iterator[Finding]:
             yield Finding(
                 "warning",
                 "bathymetry",
-                f"{craft.name}: no seabed is known at north {craft.stations.north[k]:.0f} m, east"
-                f" {craft.stations.east[k]:.0f} m; without an echo it keeps the depth it had",
+                f"{craft.name}: no seabed is known at north {here.north[k]:.0f} m, east {here.east[k]:.0f} m; without"
+                " an echo it keeps the depth it had",
             )
 
 

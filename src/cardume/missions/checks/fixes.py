@@ -35,12 +35,16 @@ class Fixes:
         return self.period / (1.0 - self.loss)
 
 
+AT_AN_ALTITUDE = 1.0  # [m] of depth at least, of a vehicle that keeps one
+
+
 def has_gnss(vehicle: VehiclePlan) -> bool:
     """Whether a vehicle's GNSS works at the depth that it keeps."""
     gnss = vehicle.laws.get("gnss")
     if gnss is None or not has_parameter(gnss, "deepest"):
         return gnss is not None
-    return not vehicle.orders.keeps_altitude and vehicle.setup.depth <= gnss.value("deepest")
+    least = AT_AN_ALTITUDE if vehicle.orders.keeps_altitude else 0.0
+    return max(vehicle.setup.depth, least) <= gnss.value("deepest")
 
 
 def has_parameter(choice: Choice, name: str) -> bool:
