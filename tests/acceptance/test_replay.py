@@ -93,7 +93,7 @@ def replay(plan: Plan, at_least: int = 0) -> None:
     tables, messages = blind(plan), 0
     for moment in recorded(plan):
         reference, said = answer(tables, moment)
-        assert np.isfinite(reference).all()
+        assert np.isfinite(reference[: Reference._fields.index("yaw_rate")]).all()  # of a yaw rate it may ask none
         assert same_bits(reference, moment.reference), (moment.vehicle, moment.time)
         assert (said[0] > 0.5) == (moment.said.size > 0)
         if moment.said.size:

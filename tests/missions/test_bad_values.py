@@ -30,6 +30,15 @@ MISSIONS = {
         "guidance.reference_point=virtual_target",
     ),
     "file": (SMALLEST, "path={type: file, file: helpers.py}"),
+    "orders": (
+        SMALLEST,
+        "phases={dive: {timeout: 9}, gather: {timeout: 9}, hold: 3, circle: 4}",
+        "limits={depth: 9, altitude: 1, geofence: {radius: 9}}",
+        "abort={silence: 3, time: 9}",
+        "bathymetry={type: flat}",
+        "vehicles.alone.altitude=3",
+        "vehicles.alone.start.depth=1",
+    ),
 }
 REPEATED = {
     "line": ("path",),
@@ -37,6 +46,7 @@ REPEATED = {
     "segments": ("path", "guidance"),
     "arc": ("path", "current"),
     "file": ("path",),
+    "orders": ("phases", "limits", "abort", "bathymetry"),
 }
 
 
