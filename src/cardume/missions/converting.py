@@ -22,6 +22,8 @@ from cardume.units import printable
 
 if TYPE_CHECKING:
     from cardume.missions.mission import Mission
+from cardume.missions.orders import steady_depth, table_speed
+from cardume.missions.schema import Profile
 
 MISSION = "mission"
 KINDS: dict[str, tuple[str, ...]] = {MISSION: (".yaml", ".yml"), **{name: f.suffixes for name, f in FORMATS.items()}}
@@ -182,14 +184,22 @@ def _plan_of_mission(request: Request) -> tuple[Plan, list[str], list[str]]:
         )
     lost = ["the rest of the mission: vehicles, laws, sensors, current, what is required"]
     plan = Plan(source=request.source, origin=origin, segments=segments, members=_members(mission), name=mission.name)
-    speed = mission.formation.speed
+    lost += [f"the profile of {key}: {kept} is kept" for key, kept in _profiles(mission)]
+    mean = table_speed(mission, sum(segment.length for segment in plan.segments))
+    speed = None if math.isnan(mean) else mean
     plan = replace(plan, segments=tuple(replace(s, speed=speed) if s.speed is None else s for s in plan.segments))
     return _whole_laps(plan, mission, lost), [vehicle.name for vehicle in mission.vehicles], lost
 
 
+def _profiles(mission: Mission) -> list[tuple[str, str]]:
+    """What of a mission changes with time or along the path, and what of it a path file gets."""
+    found = [("formation.speed", "its mean")] if isinstance(mission.formation.speed, Profile) else []
+    return found + [(f"{v.name}'s depth", "its start") for v in mission.vehicles if isinstance(v.depth, Profile)]
+
+
 def _members(mission: Mission) -> tuple[Member, ...]:
     return tuple(
-        Member(id=number, ahead=v.offset.ahead, starboard=v.offset.starboard, depth=v.depth)
+        Member(id=number, ahead=v.offset.ahead, starboard=v.offset.starboard, depth=steady_depth(v))
         for number, v in enumerate(mission.vehicles, 1)
     )
 
