@@ -44,7 +44,7 @@ def test_named_files_and_make_targets_exist(page: Path) -> None:
     assert not [text for text in files if not (ROOT / text).exists()]
 
 
-@pytest.mark.parametrize("folder", ["extending", "decisions"])
+@pytest.mark.parametrize("folder", ["extending", "decisions", "tutorials"])
 def test_every_page_is_in_its_index(folder: str) -> None:
     pages = {page.name for page in (ROOT / "docs" / folder).glob("*.md")} - {"index.md"}
     assert pages == {target for target in links(ROOT / "docs" / folder / "index.md") if "/" not in target}

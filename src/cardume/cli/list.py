@@ -6,7 +6,7 @@ import re
 import shutil
 import sys
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -27,13 +27,15 @@ KEYS = {
 
 
 @click.command("list")
-@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|formats]")
+@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|formats|MODULE:LAW]")
 @allow_code_option
 @quiet_option
 @json_option
 def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
-    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, or the path file formats."""
-    del allow_code  # taken everywhere, though only ours are listed
+    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, or the path file formats.
+
+    A law of yours is shown by its name in a mission, as my_laws:my_law, its folder given by --allow-code.
+    """
     if what is None:
         found = _families()
     elif what == "missions":
@@ -42,6 +44,8 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         found = _metrics()
     elif what == "formats":
         found = _formats()
+    elif ":" in what:
+        found = _users_law(what, allow_code)
     else:
         found = _laws(what)
     if as_json:
@@ -83,6 +87,14 @@ def _laws(family: str) -> list[dict[str, Any]]:
         hint = nearest(family, names) or "."
         raise click.UsageError(f"There is no family '{family}'{hint} There are {', '.join(names)}")
     return [describe(law) for law in families[family].values()]
+
+
+def _users_law(name: str, folders: Sequence[Path]) -> list[dict[str, Any]]:
+    """A law of the user's, called as a mission names it."""
+    from cardume.missions.available import any_users_law
+
+    law = any_users_law(name, [folder.resolve() for folder in folders])
+    return [describe(law) | {"name": name, "key": KEYS.get(law.family, law.family)}]
 
 
 def describe(law: Any) -> dict[str, Any]:
@@ -151,6 +163,8 @@ def _say(entry: Mapping[str, Any]) -> None:
         click.echo(f"      {line.strip()}")
     for parameter in entry.get("parameters", ()):
         click.echo(f"    {_one_line(parameter)}")
+    if "key" in entry and "laws" not in entry:
+        click.echo(_indented(f"chosen under the key {entry['key']}", width))
     if entry.get("source"):
         click.echo(_indented(f"Source: {entry['source']}", width))
     if "suffixes" in entry:

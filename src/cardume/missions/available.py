@@ -80,7 +80,7 @@ def every_law() -> dict[str, dict[str, Law]]:
 
 
 def users_law(family: str, name: str, folders: Sequence[Path]) -> Law:
-    """Import a user's law.
+    """Import a user's law of a family.
 
     Args:
         family: that it must belong to.
@@ -89,6 +89,22 @@ def users_law(family: str, name: str, folders: Sequence[Path]) -> Law:
 
     Raises:
         LawError: not allowed, not found, not a law, or of another family.
+    """
+    law = any_users_law(name, folders)
+    if law.family != family:
+        raise LawError(f"{name} is a law of the family {law.family}; here one of the family {family} is wanted")
+    return law
+
+
+def any_users_law(name: str, folders: Sequence[Path]) -> Law:
+    """Import a user's law of whatever family.
+
+    Args:
+        name: `module:function`, the module inside one of the folders.
+        folders: from which code may be imported.
+
+    Raises:
+        LawError: not allowed, not found, or not a law.
     """
     module_name, _, function = name.partition(":")
     if not folders:
@@ -106,9 +122,7 @@ def users_law(family: str, name: str, folders: Sequence[Path]) -> Law:
     if law is None:
         raise LawError(f"module {module_name} has no '{function}'; check its spelling")
     if not isinstance(law, Law):
-        raise LawError(f"{name} is no law: mark the function with the decorator of its family, {family}")
-    if law.family != family:
-        raise LawError(f"{name} is a law of the family {law.family}; here one of the family {family} is wanted")
+        raise LawError(f"{name} is no law: mark the function with the decorator of its family, such as @guidance_law")
     return law
 
 

@@ -25,7 +25,7 @@ def comparison_table(comparison: Comparison, width: int) -> str:
         width: [characters] of the terminal.
     """
     table = _table(comparison, width, gap=2)
-    if max(map(len, table)) > width:
+    if max(map(len, table)) > width or any(f"{INDENT}{label} " not in "\n".join(table) for label in comparison.labels):
         table = _table(comparison, width, gap=1)
     return "\n".join([*table, *_notes(comparison, width)])
 
@@ -154,7 +154,7 @@ def _number(value: float, decimals: int, sign: str = "") -> str:
 
 def _interval(estimate: Estimate, decimals: int) -> str:
     if not math.isfinite(estimate.low):
-        return NOTHING
+        return ""
     if estimate.low == estimate.high:
         return "exact" if estimate.mean else "equal"
     return f"{_number(estimate.low, decimals)} to {_number(estimate.high, decimals)}"
