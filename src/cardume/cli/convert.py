@@ -79,12 +79,13 @@ class LatLon(click.ParamType):
 @quiet_option
 @json_option
 def convert(**given: Any) -> int:
-    """Convert IN, a mission or path file, to OUT: its ending says the format.
+    """Convert IN, a mission, a path file, or a run and its log, to OUT: its ending says the format.
 
     \b
     .yaml  mission              .plan       QGroundControl
     .gpx   route                .waypoints  ArduPilot, QGC WPL 110
     .geojson                    .medusa.txt MEDUSA / Farol
+    Of a run or its log.nc: tracks .gpx .geojson .kml, tables .csv .parquet, ROS 2 .mcap
     Says what OUT cannot hold, and what of IN is not flown. cardume list formats says more.
     """
     from cardume.missions import converting
@@ -133,4 +134,5 @@ def _say(source: str, target: Path, result: "Conversion") -> None:
         width = min(shutil.get_terminal_size().columns, 100)
         for sentence in sentences:
             click.echo(textwrap.fill(sentence, width, initial_indent="  - ", subsequent_indent="    "))
-    click.echo(f"\nNext\n  cardume check {shlex.quote(str(target))}")
+    if result.is_flyable:
+        click.echo(f"\nNext\n  cardume check {shlex.quote(str(target))}")

@@ -26,7 +26,14 @@ from cardume.missions.orders import steady_depth, table_speed
 from cardume.missions.schema import Profile
 
 MISSION = "mission"
-KINDS: dict[str, tuple[str, ...]] = {MISSION: (".yaml", ".yml"), **{name: f.suffixes for name, f in FORMATS.items()}}
+LOG = "log"
+VIEWERS = {"kml": (".kml",), "csv": (".csv",), "parquet": (".parquet",), "mcap": (".mcap",)}
+KINDS: dict[str, tuple[str, ...]] = {
+    MISSION: (".yaml", ".yml"),
+    LOG: (".nc",),
+    **{name: f.suffixes for name, f in FORMATS.items()},
+    **VIEWERS,
+}
 """Kinds of file, by the endings of their names."""
 
 
@@ -70,12 +77,14 @@ class Conversion:
         holds: what is in it, in a few words.
         lost: what the target does not keep, one sentence each.
         notes: what of the source is not flown, one sentence each.
+        is_flyable: whether `cardume check` and `run` take what came out.
     """
 
     content: bytes
     holds: str
     lost: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
+    is_flyable: bool = True
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -122,7 +131,9 @@ def _kind_of_name(name: str) -> str:
 
 
 def _kind_of_source(source: str) -> str:
-    """By its contents where that is a path file, else by its name."""
+    """By its contents where that is a path file, else by its name; the directory of a run stands for its log."""
+    if (Path(source) / "log.nc").is_file():
+        return LOG
     kind = _kind_of_name(source)
     if (source in library.names() and not Path(source).is_file()) or (kind and kind not in FORMATS):
         return kind or MISSION
@@ -253,9 +264,16 @@ def _to_mission(request: Request) -> Conversion:
     return Conversion(content=text.encode(), holds=f"mission: {len(plan.segments)} legs", lost=lost, notes=plan.notes)
 
 
+def _from_log(request: Request) -> Conversion:
+    from cardume.missions.exports.from_log import convert_log
+
+    return convert_log(request)
+
+
 PATH_FILES = frozenset(FORMATS)
 CONVERTERS: tuple[Converter, ...] = (
     Converter(sources=PATH_FILES | {MISSION}, targets=PATH_FILES, convert=_to_path_file),
     Converter(sources=PATH_FILES, targets=frozenset({MISSION}), convert=_to_mission),
     Converter(sources=frozenset({MISSION}), targets=frozenset({MISSION}), convert=_resolve),
+    Converter(sources=frozenset({LOG}), targets=frozenset({"gpx", "geojson", *VIEWERS}), convert=_from_log),
 )
