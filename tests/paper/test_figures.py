@@ -109,8 +109,8 @@ def test_figure_4_the_error_points_away_from_the_sway_and_turns_with_the_vehicle
 
 
 def test_figure_4_without_sway_there_is_next_to_no_error() -> None:
-    """The paper's vehicle has no sway. It turns at the start of a tick, so that a centimeter of row U is left."""
-    flight = fly("figure-4", "model=kinematic")
+    """The paper's vehicle has no sway. It turns at the start of a tick: a centimeter is left, row U."""
+    flight = fly("figure-4", "model=kinematic", "plant_step=0.1")
     error, rows = np.hypot(*estimation_error(flight).T), before_fixes(flight)
     turned = RATE * 10.0
     assert error[rows][flight.times[rows] > 70.0].max() < 1.1 * 0.5 * 0.1 * math.sin(turned / 2.0)
