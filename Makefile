@@ -3,6 +3,7 @@
 #   make test         the fast tests; make test-slow the others; make test-all both
 #   make check        style, types, layers, docstrings, spelling
 #   make bench        speed of the named workloads
+#   make pictures     draw the pictures of docs/theory/gallery.md again
 #   make size         what an installation without the development tools weighs
 #   make constraints  resolve the versions again (on the oldest Python)
 #   make clean        remove what the targets made
@@ -34,7 +35,7 @@ ifneq ($(MADE_IN)/$(MADE_FROM),$(CURDIR)/$(WANTED))
 REMAKE := remake
 endif
 
-.PHONY: demo test test-slow test-all check bench size constraints clean setup setup-dev remake
+.PHONY: demo test test-slow test-all check bench pictures size constraints clean setup setup-dev remake
 .DEFAULT_GOAL := demo
 
 demo: setup
@@ -68,6 +69,9 @@ check: setup-dev
 
 bench: setup-dev
 	@$(BIN)/python -m benchmarks
+
+pictures: setup
+	@$(BIN)/python examples/gallery.py
 
 size: setup
 	@$(BIN)/python .ci/size.py

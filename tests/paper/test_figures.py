@@ -137,8 +137,27 @@ def test_figure_5_one_message_a_second_costs_little() -> None:
 
 
 def test_figure_5_the_divers_are_told_what_they_are_required_to() -> None:
-    """What the mission requires is met, by every seed of six: 0.5 m rms across, never more than 3 m along."""
+    """What the mission requires is met, by every seed of six: 0.5 m rms across; along 1.2 m at worst, of 3 m."""
     for seed in range(1, 7):
         flight = fly("figure-5", seed=seed)
         assert flight.metrics.worst("cross_track_rms")[0] < 0.5
-        assert flight.metrics.worst("coordination_error_max")[0] < 3.0
+        assert flight.metrics.worst("coordination_error_max")[0] < 1.5
+
+
+def test_figure_5_late_fixes_cost_more_than_rare_messages() -> None:
+    """Half a second at 0.5 m/s: the reset rule lets the divers run .25 m ahead of the surface vehicle."""
+
+    def ahead(*overrides: str) -> tuple[float, float]:
+        """(m the surface vehicle is ahead of the divers, m rms of the largest difference), means over seeds."""
+        flights = [fly("figure-5", *overrides, seed=seed) for seed in range(1, 5)]
+        leads = []
+        for flight in flights:
+            state = flight.channels["coordination_state"][100:740]
+            leads.append(state[:, 0].mean() - state[:, 1:].mean())
+        return float(np.mean(leads)), float(np.mean([f.metrics.fleet["coordination_error_rms"] for f in flights]))
+
+    lead, error = ahead()
+    assert lead == pytest.approx(-0.25, abs=0.04)
+    moved_lead, moved_error = ahead("position.law=reset_compensated")
+    assert moved_lead == pytest.approx(0.0, abs=0.03)
+    assert moved_error < 0.7 * error
