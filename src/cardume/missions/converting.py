@@ -18,12 +18,13 @@ from cardume.missions.formats import parse_plan
 from cardume.missions.formats.content import FORMATS, format_of, read_text
 from cardume.missions.formats.plan import Member, Plan
 from cardume.missions.geodesy import GeoPoint
+from cardume.missions.schema import Profile
 from cardume.units import printable
 
 if TYPE_CHECKING:
     from cardume.missions.mission import Mission
-from cardume.missions.orders import steady_depth, table_speed
-from cardume.missions.schema import Profile
+    from cardume.paths.corner import OwnSegment
+    from cardume.paths.segment import Segment
 
 MISSION = "mission"
 LOG = "log"
@@ -180,7 +181,9 @@ def _plan_of(request: Request) -> tuple[Plan, list[str]]:
 def _plan_of_mission(request: Request) -> tuple[Plan, list[str], list[str]]:
     """The path of a mission, the names of its vehicles, and what is lost of it in any path file."""
     from cardume.missions.drawing import draw
+    from cardume.missions.formats.writing import with_speed
     from cardume.missions.opening import open_mission
+    from cardume.missions.orders import table_speed
     from cardume.missions.planning import reference_path
 
     opened = open_mission(request.source, list(request.overrides), request.seed, list(request.allow_code))
@@ -194,11 +197,11 @@ def _plan_of_mission(request: Request) -> tuple[Plan, list[str], list[str]]:
             " --origin LATITUDE,LONGITUDE in degrees, or in the mission",
         )
     lost = ["the rest of the mission: vehicles, laws, sensors, current, what is required"]
+    segments = tuple(segment for segment in segments if not segment.beyond)
     plan = Plan(source=request.source, origin=origin, segments=segments, members=_members(mission), name=mission.name)
     lost += [f"the profile of {key}: {kept} is kept" for key, kept in _profiles(mission)]
     mean = table_speed(mission, sum(segment.length for segment in plan.segments))
-    speed = None if math.isnan(mean) else mean
-    plan = replace(plan, segments=tuple(replace(s, speed=speed) if s.speed is None else s for s in plan.segments))
+    plan = with_speed(plan, None if math.isnan(mean) else mean)
     return _whole_laps(plan, mission, lost), [vehicle.name for vehicle in mission.vehicles], lost
 
 
@@ -209,6 +212,8 @@ def _profiles(mission: Mission) -> list[tuple[str, str]]:
 
 
 def _members(mission: Mission) -> tuple[Member, ...]:
+    from cardume.missions.orders import steady_depth
+
     return tuple(
         Member(id=number, ahead=v.offset.ahead, starboard=v.offset.starboard, depth=steady_depth(v))
         for number, v in enumerate(mission.vehicles, 1)
@@ -234,13 +239,21 @@ def _own_plan(plan: Plan, names: Sequence[str], vehicle: str) -> Plan:
     if vehicle not in names:
         raise InputError(f"--vehicle {printable(vehicle)}: {unknown('no such vehicle', vehicle, list(names))}")
     member = plan.members[names.index(vehicle)]
-    segments = []
-    for own in own_path(plan.segments, member.starboard):
-        stretch = own.shape.length / own.reference_length if own.reference_length else 1.0
-        speed = None if own.shape.speed is None else own.shape.speed * stretch
-        segments.append(replace(own.shape, speed=speed))
+    segments = tuple(_at_own_speed(own) for own in own_path(plan.segments, member.starboard))
     alone = replace(member, ahead=0.0, starboard=0.0)
-    return replace(plan, segments=tuple(segments), members=(alone,), name=f"{plan.name}-{vehicle}")
+    return replace(plan, segments=segments, members=(alone,), name=f"{plan.name}-{vehicle}")
+
+
+def _at_own_speed(own: OwnSegment) -> Segment:
+    """A segment of a vehicle's own path with its speed there, of a curve the mean stretch for all of it."""
+    shape, curve = own.shape, own.shape.curve
+    stretch = shape.length / own.reference_length if own.reference_length else 1.0
+    if shape.speed is not None:
+        return replace(shape, speed=shape.speed * stretch)
+    if curve is None or curve.speed is None:
+        return shape
+    gained = tuple(stretch * coefficient for coefficient in curve.gained_speed)
+    return replace(shape, curve=replace(curve, speed=stretch * curve.speed, gained_speed=gained))
 
 
 def _resolve(request: Request) -> Conversion:

@@ -11,7 +11,7 @@ from cardume.missions.formats.content import refused
 from cardume.units import printable, show_text
 
 Path = tuple[str | int, ...]
-WORDS = {dict: "an object", list: "a list", str: "a text", type(None): "null", bool: "true or false"}
+WORDS = {dict: "an object", list: "a list", bool: "true or false"}
 
 
 class NotFiniteError(ValueError):
@@ -142,10 +142,11 @@ class Document:
 
 def described(value: Any) -> str:
     """A JSON value in words, for a message."""
-    word = WORDS.get(type(value))
-    if word == "a text":
+    if value is None:
+        return "missing or null"
+    if isinstance(value, str):
         return show_text(value)
-    return word if word and value is not None else "missing or null" if value is None else f"{value:.10g}"
+    return WORDS.get(type(value)) or show_text(json.dumps(value))[1:-1]
 
 
 def _has(value: Any, index: int) -> bool:

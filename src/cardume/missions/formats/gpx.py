@@ -140,7 +140,8 @@ class _Reader:
             self.lines[-1].parts.append([])
         elif name in POINTS and parent in (POINTS[name], "trkseg"):
             self.counts[name] = self.counts.get(name, 0) + 1
-            self.point = {"line": self.parser.CurrentLineNumber, "label": f"{name} {self.counts[name]}", **attributes}
+            place = {"line": self.parser.CurrentLineNumber, "label": f"{name} {self.counts[name]}"}
+            self.point = {key: attributes[key] for key in ("lat", "lon") if key in attributes} | place
 
     def _end(self, _tag: str) -> None:
         name, text = self.stack.pop(), "".join(self.text).strip()
@@ -148,7 +149,7 @@ class _Reader:
         parent = self.stack[-1] if self.stack else ""
         if name == "name" and parent in ("rte", "trk"):
             self.lines[-1].name = printable(text[:200])
-        elif name == "ele" and parent in POINTS:
+        elif name == "ele" and parent in POINTS and self.point:
             self.point["ele"] = text
         elif name == f"{NAMESPACE} speed" and self.point:
             self.point["speed"] = text

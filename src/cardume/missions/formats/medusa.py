@@ -25,7 +25,7 @@ from typing import Any
 from cardume.errors import InputError, MissionError, Position, Problem
 from cardume.missions.formats.plan import Member
 from cardume.missions.geodesy import GeoPoint, GridPoint, utm_to_geographic
-from cardume.units import nearest, show_text
+from cardume.units import nearest, printable, show_text
 
 ALL = -1
 BYTE_ORDER_MARK = "\ufeff"
@@ -142,7 +142,7 @@ class _Reader:
         )
 
     def _wrong(self, message: str) -> None:
-        self.problems.append(Problem(Position(self.source, self.line, self.keyword), message))
+        self.problems.append(Problem(Position(self.source, self.line, printable(self.keyword[:40])), message))
 
     def _read_version(self, line: int, words: list[str]) -> None:
         self.line, self.keyword = line, "version"

@@ -58,11 +58,11 @@ def _formation(members: Sequence[Member]) -> Iterator[str]:
 
 def _sections(segment: Segment, grid: GridScale, tolerance: float) -> Iterator[str]:
     """A segment as LINE or ARC."""
-    speed = repr(segment.speed)
     if segment.curvature == 0.0:
-        ends = [(segment.north, segment.east), *samples(segment, tolerance)]
-        for start, end in pairwise(ends):
-            yield f"LINE {_xy(start, grid)} {_xy(end, grid)} {speed} -1"
+        start = (segment.north, segment.east)
+        for end, speed in samples(segment, tolerance):
+            yield f"LINE {_xy(start, grid)} {_xy(end, grid)} {speed!r} -1"
+            start = end
         return
     radius, count = 1.0 / abs(segment.curvature), pieces(segment, MOST_TURNED)
     direction = -1 if segment.curvature > 0.0 else 1  # -1 is clockwise, a turn to starboard
@@ -70,7 +70,7 @@ def _sections(segment: Segment, grid: GridScale, tolerance: float) -> Iterator[s
     marks = [point_on(segment, segment.length * k / count) for k in range(count + 1)]
     for begin, finish in pairwise(marks):
         xy = " ".join(_xy(point, grid) for point in (begin[:2], center, finish[:2]))
-        yield f"ARC {xy} {speed} {direction} {_meters(radius * grid.scale)} -1"
+        yield f"ARC {xy} {segment.speed!r} {direction} {_meters(radius * grid.scale)} -1"
 
 
 def _center(segment: Segment) -> tuple[float, float]:

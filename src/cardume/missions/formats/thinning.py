@@ -12,45 +12,45 @@ def thin(points: np.ndarray, most: int, fixed: Sequence[int] = ()) -> tuple[list
 
     Args:
         points: [m] (n, 2).
-        most: how many may be kept.
+        most: how many may be kept, more than are fixed.
         fixed: indices that are kept in any case.
 
     Returns:
         The indices, and how far [m] the points left out may lie beside the line.
     """
-    tolerance = FINEST
-    while True:
-        kept = simplify(points, tolerance, fixed)
-        if len(kept) <= most:
-            return kept, tolerance
-        tolerance *= 1.5
+    worth = significance(points, fixed)
+    tolerance = max(FINEST, float(np.sort(worth)[::-1][most]) if len(points) > most else 0.0)
+    return [int(index) for index in np.flatnonzero(worth > tolerance)], tolerance
 
 
-def simplify(points: np.ndarray, tolerance: float, fixed: Sequence[int] = ()) -> list[int]:
-    """Indices of the points that remain when those within the tolerance of their neighbors' line are left out.
+def significance(points: np.ndarray, fixed: Sequence[int] = ()) -> np.ndarray:
+    """The tolerance [m] (n,) below which each point is kept: its distance from the line that leaves it out.
+
+    A line is split at its farthest point, and its parts in turn; a point is never worth more than the one
+    at which its line was split off.  What is worth less than the finest tolerance is not told apart.
 
     Args:
         points: [m] (n, 2).
-        tolerance: [m] > 0.
         fixed: indices that are kept in any case.
 
     Source: Douglas and Peucker (1973), with distances to the segment, not to its extension.
     """
-    kept = np.zeros(len(points), bool)
+    worth = np.zeros(len(points))
     ends = sorted({0, len(points) - 1, *fixed})
-    kept[ends] = True
-    waiting = list(zip(ends, ends[1:], strict=False))
+    worth[ends] = np.inf
+    waiting = [(first, last, np.inf) for first, last in zip(ends, ends[1:], strict=False)]
     while waiting:
-        first, last = waiting.pop()
+        first, last, limit = waiting.pop()
         if last - first < 2:
             continue
         distances = _beside(points[first + 1 : last], points[first], points[last])
         farthest = int(np.argmax(distances))
-        if distances[farthest] > tolerance:
+        limit = min(float(distances[farthest]), limit)
+        if limit > FINEST:
             middle = first + 1 + farthest
-            kept[middle] = True
-            waiting += [(first, middle), (middle, last)]
-    return [int(index) for index in np.flatnonzero(kept)]
+            worth[middle] = limit
+            waiting += [(first, middle, limit), (middle, last, limit)]
+    return worth
 
 
 def _beside(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from cardume.missions.formats.gpx import write_gpx
 from cardume.missions.formats.medusa_text import write_medusa
 from cardume.missions.formats.plan import Plan
 from cardume.missions.formats.qgroundcontrol import write_qgroundcontrol
-from cardume.missions.formats.sampling import TOLERANCE, Course, to_course
+from cardume.missions.formats.sampling import TOLERANCE, Course, speed_on, to_course
 from cardume.missions.formats.wpl import write_wpl
 from cardume.units import show_quantity
 
@@ -59,7 +59,8 @@ def write_plan(plan: Plan, kind: str, name: str, tolerance: float = TOLERANCE) -
     if kind == MEDUSA:
         _refuse_unknown_speed(plan)
         content = write_medusa(plan, name, tolerance)
-        lost = ["the geofence"] if plan.fences else []
+        lost = _lost_shapes(0, sum(segment.curve is not None for segment in plan.segments), tolerance)
+        lost += ["the geofence"] if plan.fences else []
         return Written(content=content, points=content.count(b"\nLINE ") + content.count(b"\nARC "), lost=tuple(lost))
     course = to_course(plan, name, tolerance, MOST_POINTS)
     return Written(
@@ -68,17 +69,14 @@ def write_plan(plan: Plan, kind: str, name: str, tolerance: float = TOLERANCE) -
 
 
 def _refuse_unknown_speed(plan: Plan) -> None:
-    if any(segment.speed is None for segment in plan.segments):
+    if any(speed_on(segment, 0.0) is None for segment in plan.segments):
         raise InputError("MEDUSA text needs a speed on every line and arc, and the path has none; give --speed, as 0.5")
 
 
 def _lost(plan: Plan, course: Course, kind: str, tolerance: float) -> list[str]:
     """What the format does not keep, in sentences."""
     lost = []
-    if course.arcs:
-        within = show_quantity(tolerance, "m")
-        arcs = "1 arc became" if course.arcs == 1 else f"{course.arcs} arcs became"
-        lost.append(f"{arcs} straight legs, nowhere more than {within} beside the path")
+    lost += _lost_shapes(course.arcs, course.curves, tolerance)
     lost += _lost_of_formation(plan.members)
     if course.depth is None and any(member.depth for member in plan.members):
         lost.append("the depths, for they differ from vehicle to vehicle")
@@ -87,6 +85,14 @@ def _lost(plan: Plan, course: Course, kind: str, tolerance: float) -> list[str]:
     if plan.fences and kind != QGC:
         lost.append("the geofence")
     return lost
+
+
+def _lost_shapes(arcs: int, curves: int, tolerance: float) -> list[str]:
+    counted = [f"{count} {name}{'s' * (count > 1)}" for count, name in ((arcs, "arc"), (curves, "curve")) if count]
+    if not counted:
+        return []
+    within = show_quantity(tolerance, "m")
+    return [f"{' and '.join(counted)} became straight legs, nowhere more than {within} beside the path"]
 
 
 def _lost_of_formation(members: Sequence[object]) -> list[str]:
@@ -104,5 +110,5 @@ def with_speed(plan: Plan, speed: float | None) -> Plan:
     """
     if speed is None:
         return plan
-    segments = tuple(replace(s, speed=speed) if s.speed is None else s for s in plan.segments)
+    segments = tuple(replace(s, speed=speed) if speed_on(s, 0.0) is None else s for s in plan.segments)
     return replace(plan, segments=segments)
