@@ -6,7 +6,6 @@ Whoever adds a way, such as from a log to tracks, adds its kinds of file to `KIN
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,15 +15,12 @@ from cardume.errors import InputError
 from cardume.missions import library
 from cardume.missions.formats import parse_plan
 from cardume.missions.formats.content import FORMATS, format_of, read_text
-from cardume.missions.formats.plan import Member, Plan
+from cardume.missions.formats.plan import Plan
 from cardume.missions.geodesy import GeoPoint
-from cardume.missions.schema import Profile
 from cardume.units import printable
 
 if TYPE_CHECKING:
     from cardume.missions.mission import Mission
-    from cardume.paths.corner import OwnSegment
-    from cardume.paths.segment import Segment
 
 MISSION = "mission"
 LOG = "log"
@@ -162,8 +158,10 @@ def _to_path_file(request: Request) -> Conversion:
 
 def _plan_of(request: Request) -> tuple[Plan, list[str]]:
     """The path that a source holds, and what of the source beside it is not kept."""
+    from cardume.missions.mission_path import own_plan, plan_of_mission
+
     if request.source_kind == MISSION:
-        plan, names, lost = _plan_of_mission(request)
+        plan, names, lost = plan_of_mission(opened(request), request.source, request.origin)
     else:
         path = Path(request.source)
         text, source = read_text(path), printable(str(path))
@@ -171,96 +169,23 @@ def _plan_of(request: Request) -> tuple[Plan, list[str]]:
         plan = replace(plan, name=plan.name or path.name.split(".")[0])
         names, lost = [str(member.id) for member in plan.members], []
     if request.vehicle:
-        plan = _own_plan(plan, names, request.vehicle)
+        plan = own_plan(plan, names, request.vehicle)
     elif request.source_kind == MISSION and request.target_kind == "medusa" and len(names) > 1:
         numbered = ", ".join(f"{name} is {number}" for number, name in enumerate(names, 1))
         lost.append(f"the names of the vehicles: {numbered}")
     return plan, lost
 
 
-def _plan_of_mission(request: Request) -> tuple[Plan, list[str], list[str]]:
-    """The path of a mission, the names of its vehicles, and what is lost of it in any path file."""
-    from cardume.missions.drawing import draw
-    from cardume.missions.formats.writing import with_speed
+def opened(request: Request) -> Mission:
+    """The mission that a request names."""
     from cardume.missions.opening import open_mission
-    from cardume.missions.orders import table_speed
-    from cardume.missions.planning import reference_path
 
-    opened = open_mission(request.source, list(request.overrides), request.seed, list(request.allow_code))
-    mission = opened if opened.is_fixed else draw(opened, opened.seed)
-    given = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
-    segments, origin = reference_path(mission, request.origin or given)
-    if origin is None:
-        raise mission.error(
-            "origin",
-            "is not given, and a path file needs places on the Earth; say where north = east = 0 lies with"
-            " --origin LATITUDE,LONGITUDE in degrees, or in the mission",
-        )
-    lost = ["the rest of the mission: vehicles, laws, sensors, current, what is required"]
-    segments = tuple(segment for segment in segments if not segment.beyond)
-    plan = Plan(source=request.source, origin=origin, segments=segments, members=_members(mission), name=mission.name)
-    lost += [f"the profile of {key}: {kept} is kept" for key, kept in _profiles(mission)]
-    mean = table_speed(mission, sum(segment.length for segment in plan.segments))
-    plan = with_speed(plan, None if math.isnan(mean) else mean)
-    return _whole_laps(plan, mission, lost), [vehicle.name for vehicle in mission.vehicles], lost
-
-
-def _profiles(mission: Mission) -> list[tuple[str, str]]:
-    """What of a mission changes with time or along the path, and what of it a path file gets."""
-    found = [("formation.speed", "its mean")] if isinstance(mission.formation.speed, Profile) else []
-    return found + [(f"{v.name}'s depth", "its start") for v in mission.vehicles if isinstance(v.depth, Profile)]
-
-
-def _members(mission: Mission) -> tuple[Member, ...]:
-    from cardume.missions.orders import steady_depth
-
-    return tuple(
-        Member(id=number, ahead=v.offset.ahead, starboard=v.offset.starboard, depth=steady_depth(v))
-        for number, v in enumerate(mission.vehicles, 1)
-    )
-
-
-def _whole_laps(plan: Plan, mission: Mission, lost: list[str]) -> Plan:
-    """A circle is flown until the mission ends: as many laps as that may be."""
-    (first, *rest) = plan.segments
-    lap = 2.0 * math.pi / abs(first.curvature) if first.curvature else math.inf
-    if rest or first.length <= 2.0 * lap or first.speed is None:
-        return plan
-    laps = min(math.ceil(first.speed * mission.duration / lap), round(first.length / lap))
-    lost.append(f"laps beyond the {laps} that the mission's duration allows")
-    return replace(plan, segments=(replace(first, length=laps * lap),))
-
-
-def _own_plan(plan: Plan, names: Sequence[str], vehicle: str) -> Plan:
-    """One vehicle's own path, at its own speeds: an outer vehicle is faster in an arc."""
-    from cardume.missions.wording import unknown
-    from cardume.paths.offset import own_path
-
-    if vehicle not in names:
-        raise InputError(f"--vehicle {printable(vehicle)}: {unknown('no such vehicle', vehicle, list(names))}")
-    member = plan.members[names.index(vehicle)]
-    segments = tuple(_at_own_speed(own) for own in own_path(plan.segments, member.starboard))
-    alone = replace(member, ahead=0.0, starboard=0.0)
-    return replace(plan, segments=segments, members=(alone,), name=f"{plan.name}-{vehicle}")
-
-
-def _at_own_speed(own: OwnSegment) -> Segment:
-    """A segment of a vehicle's own path with its speed there, of a curve the mean stretch for all of it."""
-    shape, curve = own.shape, own.shape.curve
-    stretch = shape.length / own.reference_length if own.reference_length else 1.0
-    if shape.speed is not None:
-        return replace(shape, speed=shape.speed * stretch)
-    if curve is None or curve.speed is None:
-        return shape
-    gained = tuple(stretch * coefficient for coefficient in curve.gained_speed)
-    return replace(shape, curve=replace(curve, speed=stretch * curve.speed, gained_speed=gained))
+    return open_mission(request.source, list(request.overrides), request.seed, list(request.allow_code))
 
 
 def _resolve(request: Request) -> Conversion:
     """A mission with every default written."""
-    from cardume.missions.opening import open_mission
-
-    mission = open_mission(request.source, list(request.overrides), request.seed, list(request.allow_code))
+    mission = opened(request)
     text = mission.to_yaml(request.target.resolve().parent)
     return Conversion(content=text.encode(), holds="mission: every default written")
 
@@ -273,8 +198,7 @@ def _to_mission(request: Request) -> Conversion:
         raise InputError("paths with corners cannot be written as missions yet")
     path = [place_section(plan.origin), *segments_section(plan.segments)]
     text = draft_mission(plan, path, plan.name, request.speed)
-    lost = ("the geofence",) if plan.fences else ()
-    return Conversion(content=text.encode(), holds=f"mission: {len(plan.segments)} legs", lost=lost, notes=plan.notes)
+    return Conversion(content=text.encode(), holds=f"mission: {len(plan.segments)} pieces", notes=plan.notes)
 
 
 def _from_log(request: Request) -> Conversion:

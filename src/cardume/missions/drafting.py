@@ -6,8 +6,10 @@ import json
 import math
 from collections.abc import Sequence
 
-from cardume.missions.formats.plan import Member, Plan
-from cardume.missions.geodesy import GeoPoint
+import numpy as np
+
+from cardume.missions.formats.plan import Fence, Member, Plan
+from cardume.missions.geodesy import GeoPoint, to_local
 from cardume.paths.segment import Segment, end_of
 from cardume.units import format_quantity
 
@@ -38,6 +40,8 @@ def draft_mission(plan: Plan, path: Sequence[str], name: str, speed: float | Non
     lines.append("vehicles:")
     for number, member in enumerate(plan.members):
         lines += _vehicle(member, has_usbl=number == 0 and len(plan.members) > 1)
+    if plan.region is not None:
+        lines.append(_limits(plan.region, plan.origin))
     lines += ["compensation: {law: crab}", "current_observer: {law: complementary}"]
     return "\n".join(lines) + "\n"
 
@@ -93,10 +97,29 @@ def _vehicle(member: Member, has_usbl: bool) -> list[str]:
     carried = f"{sensors}, usbl: {{}}" if has_usbl else sensors
     return [
         f"  - name: vehicle-{member.id}",
-        f"    depth: {_meters(member.depth or 0.0)}",
+        f"    depth: {_depth(member)}",
         f"    offset: {{ahead: {_meters(member.ahead)}, starboard: {_meters(member.starboard)}}}",
         f"    sensors: {{{carried}}}",
     ]
+
+
+def _depth(member: Member) -> str:
+    if not member.depths:
+        return _meters(member.depth or 0.0)
+    points = ", ".join(f"[{_meters(length)}, {_meters(depth)}]" for length, depth in member.depths)
+    return f"{{profile: path, points: [{points}]}}"
+
+
+def _limits(region: Fence, origin: GeoPoint) -> str:
+    """The section `limits` that keeps vehicles in a region."""
+    latitudes, longitudes = np.array(region.corners).T
+    corners = [
+        f"{{north: {_meters(n)}, east: {_meters(e)}}}"
+        for n, e in zip(*to_local(latitudes, longitudes, origin), strict=True)
+    ]
+    if region.radius:
+        return f"limits: {{geofence: {{centre: {corners[0]}, radius: {_meters(region.radius)}}}}}"
+    return f"limits: {{geofence: {{polygon: [{', '.join(corners)}]}}}}"
 
 
 def _meters(value: float) -> str:

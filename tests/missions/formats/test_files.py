@@ -93,8 +93,10 @@ GOOD = {
     "harbor_survey.plan": (9, [0.8] * 9, None, ["DO_SET_CAM_TRIGG_DIST (item 3, 5, 7, 9 and 6 more): not flown"]),
     "corridor.plan": (5, None, None, ["DO_SET_CAM_TRIGG_DIST (item 2, 4, 6, 8 and 2 more): not flown"]),
     "submarine.plan": (3, None, 5.0, []),
-    "yo_yo.plan": (4, None, 2.0, ["depths from 2 to 8 m are asked for: flown all the way at the first one, 2 m"]),
-    "fence_and_rally.plan": (LOOP, None, None, ["geofence (2): read", "rally points (1): not used"]),
+    "yo_yo.plan": (4, None, 2.0, []),
+    "fence_and_rally.plan": (
+        LOOP, None, None, ["areas of the geofence to keep out of", "rally points (1): not used"]
+    ),
     "copter_habits.plan": (
         3,
         None,
@@ -258,6 +260,13 @@ def test_the_fence_is_kept_for_information() -> None:
     assert (len(polygon.corners), polygon.radius, polygon.is_inclusion) == (3, 0.0, False)
     assert np.degrees(circle.corners[0]) == pytest.approx([38.6925, -9.418])
     assert circle.radius == 400.0
+
+
+def test_depths_that_change_become_a_profile_along_the_path() -> None:
+    (member,) = flown("yo_yo.plan").members
+    lengths, depths = np.array(member.depths).T
+    assert depths.tolist() == [2.0, 8.0, 2.0, 8.0, 2.0]
+    assert lengths == pytest.approx([0.0, 50.0, 100.0, 150.0, 200.0], rel=4e-3)
 
 
 def test_the_antimeridian_is_no_border() -> None:

@@ -20,4 +20,7 @@ def notes_of(mission: Mission) -> tuple[str, ...]:
     if not isinstance(mission.path, FilePath):
         return ()
     origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
-    return read_plan(Path(mission.path.file), origin).notes
+    plan = read_plan(Path(mission.path.file), origin)
+    is_limited = any(vehicle.limits is not None and vehicle.limits.geofence is not None for vehicle in mission.vehicles)
+    unused = ("geofence of the file: not used; limits.geofence says where vehicles are to stay",)
+    return plan.notes if plan.region is None or is_limited else (*plan.notes, *unused)

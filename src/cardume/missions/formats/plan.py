@@ -14,17 +14,19 @@ class Member:
         id: its number in the file.
         ahead, starboard: [m] its offset from the reference path.
         depth: [m] that the file asks for; None: it asks for none.
+        depths: arc length on the reference path and depth there [m], where the depth changes along it.
     """
 
     id: int
     ahead: float = 0.0
     starboard: float = 0.0
     depth: float | None = None
+    depths: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Fence:
-    """An area that a plan keeps to or keeps out of; kept for information, nothing flies by it.
+    """An area that a plan keeps to or keeps out of.
 
     Attributes:
         corners: of a polygon, or the center of a circle.
@@ -58,3 +60,9 @@ class Plan:
     notes: tuple[str, ...] = ()
     name: str = ""
     fences: tuple[Fence, ...] = ()
+
+    @property
+    def region(self) -> Fence | None:
+        """The area that is not to be left: the first that includes; the others nobody looks at."""
+        areas = (fence for fence in self.fences if fence.radius > 0.0 or len(fence.corners) > 2)
+        return next((fence for fence in areas if fence.is_inclusion), None)

@@ -68,8 +68,9 @@ def read_qgroundcontrol(text: str, source: str) -> Draft:
     except MissionError as error:
         raise MissionError(p._replace(position=document.located(p.position)) for p in error.problems) from None
     fences = _fences(document)
-    if fences:
-        notes.append(f"geofence ({len(fences)}): read, but nothing flies by it")
+    unused = len(fences) - any(fence.is_inclusion for fence in fences)
+    if unused:
+        notes.append(f"areas of the geofence to keep out of, or beside the first ({unused}): not used")
     if rallies := document.get(("rallyPoints", "points")):
         notes.append(f"rally points ({len(rallies) if isinstance(rallies, list) else 1}): not used")
     notes = [*not_flown, *notes]

@@ -6,6 +6,7 @@ Legs are straight in local axes, which differ from geodesics by d^3 / (24 R^2): 
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from cardume.errors import MissionError, Position, Problem
 from cardume.missions.formats.plan import Fence, Member, Plan
 from cardume.missions.formats.thinning import thin
 from cardume.missions.geodesy import GeoPoint, to_local
+from cardume.missions.schema import MOST_PROFILE_POINTS
 from cardume.paths.segment import ReferencePath, Segment
 from cardume.paths.table import MAX_SEGMENTS
 
@@ -84,11 +86,13 @@ def to_plan(draft: Draft, origin: GeoPoint | None = None) -> Plan:
     if len(kept) < 2:
         raise _error(draft, draft.waypoints[0].position, "is the only place of the file; a path needs at least two")
     kept = _as_many_as_fit(draft, points, kept)
+    segments = _legs(points[kept], [draft.waypoints[index] for index in kept])
+    depths = _depths(draft, kept, segments)
     return Plan(
         source=draft.source,
         origin=home,
-        segments=_legs(points[kept], [draft.waypoints[index] for index in kept]),
-        members=(Member(id=1, depth=_one_depth(draft)),),
+        segments=segments,
+        members=(Member(id=1, depth=depths[0][1] if depths else None, depths=depths if len(depths) > 1 else ()),),
         notes=tuple(dict.fromkeys(draft.notes)),
         name=draft.name,
         fences=draft.fences,
@@ -179,14 +183,22 @@ def _legs(points: np.ndarray, waypoints: Sequence[Waypoint]) -> ReferencePath:
     )
 
 
-def _one_depth(draft: Draft) -> float | None:
-    """The depth of the first waypoint that has one: a vehicle keeps one depth all the way."""
-    depths = [waypoint.depth for waypoint in draft.waypoints if waypoint.depth is not None]
-    if not depths or not any(depths):
-        return None
-    if max(depths) - min(depths) > 0.005:
+def _depths(draft: Draft, kept: Sequence[int], segments: ReferencePath) -> tuple[tuple[float, float], ...]:
+    """Arc length and depth [m] where the depth changes, one pair where it does not, none where none is asked for."""
+    ends = [0.0, *itertools.accumulate(segment.length for segment in segments)]
+    asked = [(end, draft.waypoints[index].depth) for end, index in zip(ends, kept, strict=True)]
+    depths = [(end, depth) for end, depth in asked if depth is not None]
+    if not any(depth for _, depth in depths):
+        return ()
+    flat = [
+        0 < k < len(depths) - 1 and depths[k - 1][1] == depth == depths[k + 1][1] for k, (_, depth) in enumerate(depths)
+    ]
+    bends = [pair for pair, is_flat in zip(depths, flat, strict=True) if not is_flat]
+    if len({depth for _, depth in bends}) == 1:
+        return tuple(bends[:1])
+    if len(bends) > MOST_PROFILE_POINTS:
         draft.notes.append(
-            f"depths from {min(depths):g} to {max(depths):g} m are asked for: flown all the way at the first one,"
-            f" {depths[0]:g} m, for a vehicle keeps one depth"
+            f"depths that change {len(bends):,} times: flown all the way at the first, {bends[0][1]:g} m"
         )
-    return depths[0]
+        return tuple(bends[:1])
+    return tuple(bends)
