@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
+from cardume.laws import laws_of
 from cardume.simulation.engine import advance
 from cardume.simulation.fleet import NUM_SENSORS, TIMING, Tables, Timing
 from cardume.simulation.flight import CHANNELS, METRICS, Flight
@@ -28,6 +30,8 @@ ANGLES = ("heading", "path_course", "course_desired", "heading_desired")
 SIDED = ("sway", "yaw_rate", "cross_track", "curvature", "cross_track_estimate", "yaw_moment")
 PLAIN = set(CHANNELS) - {"course", *ANGLES, *SIDED, *(c for pair in (*PLACES, *VECTORS) for c in pair)}
 
+LAWS = sorted(laws_of("guidance"))
+
 kinematic = Scene(formation(["ideal"] * 3, [0.0, 0.0, 0.0]), model="kinematic")
 medusa = Scene(formation([EXACT] * 3, [0.0, 2.1, 0.0]))
 guided = Scene(formation([HEAD, BELOW, BELOW], [0.0, 5.3, 7.1]))  # the first tells the others where they are
@@ -37,7 +41,7 @@ scenes = st.builds(
     ),
     st.sampled_from([kinematic, medusa, guided]),
     st.sampled_from(["lawnmower", "circle", "segments"]),
-    st.sampled_from(["line_of_sight", "arcsine", "along_path"]),
+    st.sampled_from(LAWS),
     st.floats(0.013, 0.09),  # slow: near u = |V_perp| the crab angle is singular, and rounding grows
     st.floats(-3.1, 3.1),
     st.floats(-3.1, 3.1),
@@ -63,6 +67,17 @@ def test_a_moved_scene_gives_the_moved_flight(scene: Scene, north: float, east: 
 @given(scene=scenes)
 def test_a_mirrored_scene_gives_the_mirrored_flight(scene: Scene) -> None:
     compare(fly_text(scene.text()), fly_text(scene.mirrored().text()), side=-1.0)
+
+
+@settings(few, max_examples=2)
+@pytest.mark.parametrize("law", LAWS)
+@given(scene=scenes, angle=angles, north=distances, east=distances)
+def test_every_guidance_law_knows_no_place_no_direction_and_no_side(
+    law: str, scene: Scene, angle: float, north: float, east: float
+) -> None:
+    here = replace(scene, guidance=law)
+    there = here.mirrored().turned(angle).moved(north, east)
+    compare(fly_text(here.text()), fly_text(there.text()), angle, north, east, side=-1.0)
 
 
 def compare(one: Flight, other: Flight, angle: float = 0.0, north: float = 0.0, east: float = 0.0, side: float = 1.0):
