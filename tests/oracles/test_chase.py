@@ -130,9 +130,7 @@ def test_against_an_independent_integration(law: str, seed: int) -> None:
     way, waits = WAYS[seed % 3], law == "body_frame_target"
     used = {k: g for k, g in gains.items() if waits or not k.startswith("target")}
     text = ", ".join([f"law: {law}", *(f"{k}: {g!r}" for k, g in used.items())])
-    scene = Scene(
-        way.text, text, f"cross_track: {e0!r}, heading_error: {off!r}", 20.0, v, extra=water(speed, towards)
-    )
+    scene = Scene(way.text, text, f"cross_track: {e0!r}, heading_error: {off!r}", 20.0, v, extra=water(speed, towards))
     current = speed * math.cos(towards), speed * math.sin(towards)
     start = [*start_of(way, e0, off), 0.0, 0.0 if waits else v]
     north, east, psi = integrate(chasing(way, gains, v, current, waits), start, 20.0)[:3]
@@ -166,7 +164,9 @@ def test_in_a_current_the_point_ahead_is_on_the_path_and_the_vehicle_beside_it(l
     wanted = arm * across / math.hypot(0.5 - along, across)
     assert value_at(flown(scene, 0.1), "cross_track", 300.0) == pytest.approx(wanted, abs=1e-6)
     # nothing of it is changed by a compensation that stands beside it
-    crab = Scene(scene.path, scene.guidance, scene.start, 300.0, extra=water(speed, towards, "crab", reference="ground"))
+    crab = Scene(
+        scene.path, scene.guidance, scene.start, 300.0, extra=water(speed, towards, "crab", reference="ground")
+    )
     assert np.array_equal(series(flown(scene, 0.1), "north")[1], series(flown(crab, 0.1), "north")[1])
 
 

@@ -1,4 +1,4 @@
-"""Rows AA, BB and DD of theory.md: laws that learn a drift, against closed forms, other integrations and MSS's recursions."""
+"""Rows AA, BB and DD of theory.md: laws that learn a drift, against closed forms, integrations and MSS's recursions."""
 
 import math
 
@@ -119,7 +119,7 @@ def test_the_recursions_are_those_of_mss(tick: float) -> None:
 
 
 def test_the_projection_bounds_the_estimate() -> None:
-    """A drift that asks for asin(0.9) = 1.12 rad: |b| stops below M + m = 0.31 where M is 0.3, and is found where M is 1.5."""
+    """A drift that asks for asin(0.9) = 1.12 rad: |b| stops below M + m = 0.31; with M = 1.5 it is found."""
     law = "law: adaptive_line_of_sight, adaptation_gain: 0.02, crab_max: 0.3"
     stopped = memory_of(fly_plan(crossing(law, 0.45, 0.0, 200.0).text(0.1)), "guidance")[0]
     assert 0.3 < stopped <= 0.31
@@ -189,10 +189,8 @@ def test_arcsine_integral_does_not_wind_up(gain: float, overshoot: float) -> Non
         (SIGHT, None, 357.07569370),
     ],
 )
-def test_dd_integral_of_the_absolute_error(
-    guidance: str, gains: tuple[float, float] | None, printed: float
-) -> None:
-    """Row DD: int |e| dt over 300 s, kinematic, u = 0.5, d = 5, e0 = 5 m, a current of 0.1 m/s across that sets in at t = 0.
+def test_dd_integral_of_the_absolute_error(guidance: str, gains: tuple[float, float] | None, printed: float) -> None:
+    """Row DD: int |e| dt over 300 s, kinematic, u = 0.5, d = 5, e0 = 5 m, a current of 0.1 m/s across from t = 0.
 
     The estimates begin at zero; ILOS and ALOS are critically damped, the observer (33) drives `crab`.
     """

@@ -49,6 +49,7 @@ CHECKS: tuple[Check, ...] = (
     guidance.check_lag,
     guidance.check_delay,
     guidance.check_tick,
+    guidance.check_compensation,
     coordination.check_agreement,
     coordination.check_prediction,
     sensing.check_senses,

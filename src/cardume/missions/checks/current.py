@@ -20,7 +20,8 @@ from cardume.missions.checks.finding import (
 from cardume.missions.checks.scene import Craft, Scene
 from cardume.missions.checks.stations import fastest_after, spread_of
 
-STEEPEST = {"crab": 0.98, "arcsine": 0.99}  # of a right angle's sine: where these laws saturate
+# Of a right angle's sine: where these laws saturate.
+STEEPEST = {"crab": 0.98, "arcsine": 0.99, "arcsine_integral": 0.99, "arcsine_with_current": 0.99}
 OFFSET_SHOWN = 0.05  # [m]
 FASTEST = 100.0  # [m/s] for a vehicle without limits
 
@@ -156,9 +157,11 @@ def _doubt(scene: Scene, craft: Craft) -> Finding:
 def check_drift(scene: Scene) -> list[Finding]:
     """A current that nothing cancels leaves a steady cross-track error.
 
-    line of sight: d V / sqrt(u^2 - V^2);   arcsine: V / k1
+    line of sight: d V / sqrt(u^2 - V^2);   arcsine: V / k1;   vector field: w tan(pi asin(V / u) / (2 chi_inf))
 
-    Source: theory row D.
+    Laws with an integral leave none, and one with the current inside none where the current is observed.
+
+    Source: theory row D; the vector field's derived from u sin(chi_d - chi_p) = -V.
     """
     return worst(ranked for craft in scene.crafts if knows(craft) for ranked in _drift(scene, craft))
 
@@ -197,6 +200,12 @@ def steady_offset(craft: Craft, speed: np.ndarray) -> float:
     law, across = craft.law("guidance"), np.abs(craft.stations.across)
     if law.law.name == "arcsine":
         return float(across.max()) / law.value("gain")
+    if law.law.name == "arcsine_with_current":
+        observed = craft.law("current_observer").law.name != "none"
+        return 0.0 if observed else float((law.value("decay_length") * across / speed).max())
+    if law.law.name == "vector_field":
+        share = np.arcsin(across / speed) / law.value("approach")
+        return float((law.value("width") * np.tan(0.5 * np.pi * share)).max()) if share.max() < 1.0 else math.inf
     if law.law.name not in ("line_of_sight", "along_path"):
         return 0.0
     return float((law.value("lookahead") * across / np.sqrt(speed**2 - across**2)).max())

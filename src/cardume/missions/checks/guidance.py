@@ -1,4 +1,4 @@
-"""Guidance against what is late: the heading, the fixes, and the tick."""
+"""Guidance against what is late: the heading, the fixes, and the tick; and beside a compensation it does not use."""
 
 import math
 from collections.abc import Iterator
@@ -6,33 +6,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from cardume.missions.checks.abilities import heading_lag
-from cardume.missions.checks.finding import Finding, Ranked, at_least, at_most, largest, show, worst
-from cardume.missions.checks.observer import guidance_rate, spectral_radius
+from cardume.missions.checks.finding import Finding, Ranked, largest, setting_word, show, worst
+from cardume.missions.checks.observer import spectral_radius
 from cardume.missions.checks.scene import Craft, Scene
+from cardume.missions.checks.steering import Setting, demand_of, guidance_rate
 
 SLACK = 1.02
 MOST_GAPS = 50.0
-
-
-class _Setting:
-    """The number of a guidance law that says how hard it steers, whichever law it is."""
-
-    def __init__(self, scene: Scene, craft: Craft) -> None:
-        law = craft.law("guidance")
-        self.is_gain = law.law.name == "arcsine"
-        self.name = "gain" if self.is_gain else "lookahead"
-        self.value = law.value(self.name)
-        self.unit = "1/s" if self.is_gain else "m"
-        self.key = scene.key(craft, f"guidance.{self.name}")
-
-    def gentler(self, rate: float, speed: float) -> str:
-        """The setting that closes small errors at this rate [1/s] at most, at a speed [m/s]."""
-        if self.is_gain:
-            return at_most(self.key, rate / SLACK, self.unit)
-        return at_least(self.key, speed / rate * SLACK, self.unit)
-
-    def __str__(self) -> str:
-        return f"a {self.name} of {show(self.value, self.unit)}"
 
 
 def check_lag(scene: Scene) -> list[Finding]:
@@ -50,14 +30,14 @@ def _late_heading(scene: Scene, craft: Craft) -> Iterator[Ranked]:
     lag = heading_lag(craft.plan, float(craft.through_water(craft.path_speed()).max()))
     if not lag or rate <= 0.0 or rate * lag <= 0.25:
         return
-    given = _Setting(scene, craft)
+    given = Setting(scene, craft)
     damping = 0.5 / math.sqrt(rate * lag)
     message = (
         f"{craft.name}: its heading follows with a lag of about {show(lag, 's')} at {show(speed, 'm/s')}; with"
         f" {given} it overshoots (damping {damping:.2g} of the critical one)"
         f"{', and the delays beside that lag may keep it weaving' if damping < 0.6 else ''}"
     )
-    yield Ranked(rate * lag, Finding("warning", given.key, message, given.gentler(0.25 / lag, speed)))
+    yield Ranked(rate * lag, Finding("warning", given.key, message, given.gentler(0.25 / lag, speed, SLACK)))
 
 
 def check_delay(scene: Scene) -> list[Finding]:
@@ -73,19 +53,19 @@ def check_delay(scene: Scene) -> list[Finding]:
 
 def _late_fixes(scene: Scene, craft: Craft) -> Iterator[Ranked]:
     law, fixes, rate = craft.law("position").law.name, craft.fixes, guidance_rate(craft)
-    if law not in ("reset", "direct") or fixes.source is None or not math.isfinite(fixes.period):
+    if law not in ("reset", "direct") or fixes.source is None or not math.isfinite(fixes.period) or rate <= 0.0:
         return
     gap = fixes.expected_gap if law == "direct" else 0.0
     if _settles(rate, fixes.age, gap):
         return
     calm = largest(lambda r: _settles(r, fixes.age, gap), 1e-3 * rate, rate)
-    given, speed = _Setting(scene, craft), float(craft.path_speed().max())
+    given, speed = Setting(scene, craft), float(craft.path_speed().max())
     held = f" and held for {show(gap, 's')}" if gap else ""
     message = (
         f"{craft.name}: fixes are {show(fixes.age, 's')} old{held} when {law} takes them for where it is; with {given}"
         f" it weaves ever more about its path"
     )
-    yield Ranked(rate / calm, Finding("error", given.key, message, given.gentler(0.3 * calm, speed)))
+    yield Ranked(rate / calm, Finding("error", given.key, message, given.gentler(0.3 * calm, speed, SLACK)))
 
 
 def _settles(rate: float, age: float, gap: float) -> bool:
@@ -113,9 +93,31 @@ def _long_tick(scene: Scene, craft: Craft) -> Iterator[Ranked]:
     rate, tick = guidance_rate(craft), scene.mission.tick
     if rate * tick < 2.0:
         return
-    given, speed = _Setting(scene, craft), float(craft.path_speed().max())
+    given, speed = Setting(scene, craft), float(craft.path_speed().max())
     message = (
         f"{craft.name}: in one tick of {show(tick, 's')} it goes {show(speed * tick, 'm')}; with {given} it crosses its"
         " path at every tick and never settles"
     )
-    yield Ranked(rate * tick, Finding("warning", given.key, message, given.gentler(0.5 / tick, speed)))
+    yield Ranked(rate * tick, Finding("warning", given.key, message, given.gentler(0.5 / tick, speed, SLACK)))
+
+
+def check_compensation(scene: Scene) -> list[Finding]:
+    """A compensation beside a guidance law that asks for a heading, a yaw rate or a speed of its own: past it."""
+    return worst(ranked for craft in scene.crafts for ranked in _idle_compensation(scene, craft))
+
+
+def _idle_compensation(scene: Scene, craft: Craft) -> Iterator[Ranked]:
+    compensation, demand = craft.law("compensation").law.name, demand_of(craft)
+    if compensation == "none" or demand is None:
+        return
+    turns, has_heading, has_speed = (math.isfinite(x) for x in (demand.yaw_rate, demand.heading, demand.speed))
+    if not (turns or has_heading):
+        return
+    law, key = craft.law("guidance").law.name, scene.key(craft, "compensation.law")
+    asked = "yaw rates" if turns else "headings"
+    left = "nothing" if has_speed else "only the speed"
+    message = (
+        f"{craft.name}: {law} asks for {asked}{' and speeds' if has_speed else ''} itself, past compensation; of"
+        f" {compensation} {left} is used"
+    )
+    yield Ranked(1.0, Finding("note", key, message, setting_word(key, "none") if has_speed else ""))

@@ -8,6 +8,7 @@ import numpy as np
 from cardume.missions.checks.finding import Finding, Ranked, at_least, at_most, both, show, worst
 from cardume.missions.checks.fixes import has_parameter
 from cardume.missions.checks.scene import Craft, Scene
+from cardume.missions.checks.steering import guidance_rate
 
 NEAR = 0.6  # of the gap at which it turns unstable
 SAFE = 0.3
@@ -236,13 +237,3 @@ def believed_scale(craft: Craft) -> float:
     """a of eq. (38): believed over true speed."""
     source = craft.plan.laws.get("dvl") or craft.plan.laws.get("speed")
     return source.value("scale") if source is not None and has_parameter(source, "scale") else 1.0
-
-
-def guidance_rate(craft: Craft) -> float:
-    """L [1/s], how fast guidance closes a small error: u / d, or k1 of `arcsine`; 0 for a user's own law."""
-    law = craft.law("guidance")
-    if law.law.name == "arcsine":
-        return law.value("gain")
-    if law.law.name not in ("line_of_sight", "along_path"):
-        return 0.0
-    return float(craft.path_speed().max()) / law.value("lookahead")

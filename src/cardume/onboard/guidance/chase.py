@@ -1,4 +1,4 @@
-"""Chasing a point: a speed and a yaw rate that bring a point ahead of the vehicle onto one that moves along the path."""
+"""Chasing a point: speed and yaw rate that bring a point ahead of the vehicle onto one that moves along the path."""
 
 from typing import NamedTuple
 
