@@ -7,6 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from cardume.onboard.guidance import body_frame_target
+from cardume.onboard.guidance.body_frame_target import Target
+from cardume.paths import line as paths
+from cardume.paths.offset import offset_path
+from cardume.paths.segment import Start
+from cardume.signals import Motion, Pace, PathError
 from cardume.simulation.flight import Flight
 from flying import fly_text, series, value_at
 from oracles.closed_forms import integrate
@@ -129,6 +135,7 @@ def test_against_an_independent_integration(law: str, seed: int) -> None:
     e0, off, speed, towards = (float(x) for x in random.uniform([-4, -1, 0.0, -3], [4, 1, 0.15, 3]))
     way, waits = WAYS[seed % 3], law == "body_frame_target"
     used = {k: g for k, g in gains.items() if waits or not k.startswith("target")}
+    used |= {"target_speed_min": -50.0, "target_speed_max": 50.0} if waits else {}
     text = ", ".join([f"law: {law}", *(f"{k}: {g!r}" for k, g in used.items())])
     scene = Scene(way.text, text, f"cross_track: {e0!r}, heading_error: {off!r}", 20.0, v, extra=water(speed, towards))
     current = speed * math.cos(towards), speed * math.sin(towards)
@@ -177,6 +184,18 @@ def test_the_limits_hold() -> None:
     assert np.abs(rate).max() == pytest.approx(0.07, abs=1e-9)
     assert (surge.min(), surge.max()) == (0.0, 0.6)
     assert abs(value_at(flight, "cross_track", 120.0)) < 0.1
+
+
+def test_the_target_runs_neither_back_nor_ahead_faster_than_it_may() -> None:
+    path = offset_path(paths.line(Start(), 100.0), 0.0, 0.0, 0.5)
+    far = [PathError(along_track=s1, path=path) for s1 in (-40.0, 40.0)]
+    motion = Motion(0.0, 0.0, 0.5, 0.0, 0.5, 0.0, 0.0, 0.0)
+    limits = {"target_speed_min": -0.2, "target_speed_max": 0.7}
+    for error, speed in zip(far, (-0.2, 0.7), strict=True):
+        target = Target(1.0, 0.0, 0.0)
+        for _ in range(200):
+            _, target = body_frame_target(error, motion, Pace(0.5), target._replace(arc_length=0.0), 0.1, **limits)
+        assert target.speed == speed
 
 
 def test_a_target_takes_the_correction_of_coordination() -> None:

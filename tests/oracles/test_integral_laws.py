@@ -13,8 +13,8 @@ from oracles.kinematic import curve as curved
 
 COURSE = 0.5
 LINE = f"type: line, start: {{north: 3, east: -2, course: {COURSE!r}}}, length: 3000"
-ILOS = "law: integral_line_of_sight, lookahead: 5, integral_gain: 0.125"
-ALOS = "law: adaptive_line_of_sight, lookahead: 5, adaptation_gain: 0.005"
+INTEGRAL = "law: integral_line_of_sight, lookahead: 5, integral_gain: 0.125"
+ADAPTIVE = "law: adaptive_line_of_sight, lookahead: 5, adaptation_gain: 0.005"
 SIGHT = "law: line_of_sight, lookahead: 5"
 
 
@@ -28,7 +28,7 @@ def crossing(guidance: str, v: float = 0.1, e0: float = 5.0, duration: float = 5
     return Scene(LINE, guidance, f"cross_track: {e0!r}", duration, u, extra=across(v))
 
 
-@pytest.mark.parametrize(("guidance", "printed"), [(ILOS, -0.0739270561), (ALOS, -0.2336972589)])
+@pytest.mark.parametrize(("guidance", "printed"), [(INTEGRAL, -0.0739270561), (ADAPTIVE, -0.2336972589)])
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_aa_bb_error_at_the_printed_parameters(guidance: str, printed: float, side: float) -> None:
     """Rows AA, BB: e(50 s) from e0 = 5 m in a current of 0.1 m/s, kappa = 0.125 m/s and gamma = 0.005 1/(m s)."""
@@ -78,7 +78,7 @@ def test_aa_bb_what_is_learnt(v: float, integral: float | None, angle: float | N
     learnt = 5.0 * math.tan(crab) / 0.125
     if integral and angle:
         assert (learnt, crab) == pytest.approx((integral, angle), abs=1e-10)
-    for law, wanted in ((ILOS, learnt), (ALOS, crab)):
+    for law, wanted in ((INTEGRAL, learnt), (ADAPTIVE, crab)):
         scene = crossing(law, v, 5.0, 900.0)
         assert memory_of(fly_plan(scene.text(0.1)), "guidance") == pytest.approx([wanted], rel=1e-9)
         assert value_at(flown(scene, 0.1), "cross_track", 900.0) == pytest.approx(0.0, abs=1e-9)
@@ -105,15 +105,15 @@ def test_aa_bb_poles(share: float) -> None:
 def test_the_recursions_are_those_of_mss(tick: float) -> None:
     """`ILOSpsi.m` and `ALOSpsi.m`: heading from the state before, then y_int and beta_hat one Euler step on."""
     e, z, b, f, h = 6.0, 0.0, 0.0, 6.0, tick
-    ilos, alos = [], []
+    integral, adaptive = [], []
     for _ in range(round(60.0 / h) + 1):
-        ilos.append(e)
-        alos.append(f)
+        integral.append(e)
+        adaptive.append(f)
         psi = -math.atan((1.0 / 5.0) * (e + 0.125 * z))
         z, e = z + h * 5.0 * e / (5.0**2 + (e + 0.125 * z) ** 2), e + h * (0.5 * math.sin(psi) + 0.1)
         psi = -b - math.atan(f / 5.0)
         b, f = b + h * 0.005 * 5.0 * f / math.sqrt(5.0**2 + f**2), f + h * (0.5 * math.sin(psi) + 0.1)
-    for law, wanted in ((ILOS, ilos), (ALOS, alos)):
+    for law, wanted in ((INTEGRAL, integral), (ADAPTIVE, adaptive)):
         times, flew = series(flown(crossing(law, 0.1, 6.0, 60.0), tick), "cross_track")
         assert flew[:61] == pytest.approx(np.array(wanted)[np.round(times[:61] / h).astype(int)], abs=1e-11)
 
@@ -183,8 +183,8 @@ def test_arcsine_integral_does_not_wind_up(gain: float, overshoot: float) -> Non
     ("guidance", "gains", "printed"),
     [
         (SIGHT, (1.0, 0.25), 67.29396187),
-        (ALOS, None, 76.77040111),
-        (ILOS, None, 79.71327972),
+        (ADAPTIVE, None, 76.77040111),
+        (INTEGRAL, None, 79.71327972),
         (SIGHT, (0.2, 0.01), 82.47562905),
         (SIGHT, None, 357.07569370),
     ],
@@ -192,7 +192,7 @@ def test_arcsine_integral_does_not_wind_up(gain: float, overshoot: float) -> Non
 def test_dd_integral_of_the_absolute_error(guidance: str, gains: tuple[float, float] | None, printed: float) -> None:
     """Row DD: int |e| dt over 300 s, kinematic, u = 0.5, d = 5, e0 = 5 m, a current of 0.1 m/s across from t = 0.
 
-    The estimates begin at zero; ILOS and ALOS are critically damped, the observer (33) drives `crab`.
+    The estimates begin at zero; the two laws are critically damped, the observer (33) drives `crab`.
     """
     observer = "none" if gains is None else f"{{law: complementary, k1: {gains[0]}, k2: {gains[1]}}}"
     extra = across(0.1, "none" if gains is None else "crab", observer)

@@ -9,6 +9,7 @@ from cardume.onboard.guidance.base import guidance_law, guide
 from cardume.onboard.guidance.body_frame_target import body_frame_target
 from cardume.onboard.guidance.integral_line_of_sight import integral_line_of_sight
 from cardume.onboard.guidance.line_of_sight import line_of_sight
+from cardume.onboard.guidance.path_frame_backstepping import path_frame_backstepping
 from cardume.onboard.guidance.trajectory_tracking import trajectory_tracking
 from cardume.onboard.guidance.vector_field import vector_field
 
@@ -23,6 +24,7 @@ __all__ = [
     "guide",
     "integral_line_of_sight",
     "line_of_sight",
+    "path_frame_backstepping",
     "trajectory_tracking",
     "vector_field",
 ]

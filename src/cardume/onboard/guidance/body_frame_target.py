@@ -1,9 +1,11 @@
 """A virtual target with a speed of its own, chased in the vehicle's axes: speed and yaw rate."""
 
+import math
 from typing import Annotated, NamedTuple
 
 from cardume.compiler import where
 from cardume.laws import (
+    Bounds,
     Meters,
     MetersPerSecond,
     NotNegative,
@@ -42,13 +44,15 @@ def body_frame_target(
     target_damping: Positive[PerSecond] = 1.0,
     target_pull: NotNegative[PerSecondSquared] = 1.0,
     target_acceleration_max: Positive[Annotated[float, Unit("m/s^2")]] = 0.1,
+    target_speed_min: Annotated[MetersPerSecond, Bounds(-math.inf, 0.0)] = -0.1,
+    target_speed_max: Positive[MetersPerSecond] = 1.0,
     speed_max: Positive[MetersPerSecond] = 1.0,
     yaw_rate_max: Positive[RadiansPerSecond] = 0.2,
 ) -> tuple[Demand, Target]:
     """Bring a point ahead of the vehicle onto a target that waits for it.
 
     (u, b r) = -a tanh(K e_B / a) - (0, v) - R(psi)^T V_c + R(psi)^T t s',   e_B = R(psi)^T (p - p_t) + (b, 0)
-    s'' = sat(-kz (s' - v_d) + ke t^T R(psi) e_B)
+    s'' = sat(-kz (s' - v_d) + ke t^T R(psi) e_B),   s' within its bounds
 
     p_t is the target, at arc length s of the vehicle's own path, t the path's tangent there; the target starts
     from rest at the vehicle's reference point. At rest e_B = 0: the vehicle is b behind the target. Unsaturated,
@@ -68,6 +72,8 @@ def body_frame_target(
         target_damping: [1/s] kz > 0.
         target_pull: [1/s^2] ke; 0: the target does not wait.
         target_acceleration_max: [m/s^2] of sat.
+        target_speed_min: [m/s] <= 0: how fast the target may run back to the vehicle.
+        target_speed_max: [m/s] how fast it may run ahead.
         speed_max: [m/s] the speed asked for is between 0 and that.
         yaw_rate_max: [rad/s] either way.
 
@@ -83,4 +89,5 @@ def body_frame_target(
     how = Chase(arm, gain_ahead, gain_starboard, correction_max, speed_max, yaw_rate_max)
     wanted = target_pull * quarry.along - target_damping * (memory.speed - pace.speed)
     speed = memory.speed + dt * clip(wanted, -target_acceleration_max, target_acceleration_max)
+    speed = clip(speed, target_speed_min, target_speed_max)
     return chase(quarry, motion, pace.speed, how), Target(1.0, s + dt * speed, speed)
