@@ -10,13 +10,13 @@ import importlib
 import inspect
 import math
 import typing
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from types import MappingProxyType
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from cardume.compiler import Rows, SharedRows, at, load, store
+from cardume.compiler import Rows, at, load, load_fixed, store
 from cardume.compiler.calls import (
     FLAT,
     STRIDED,
@@ -29,64 +29,71 @@ from cardume.compiler.calls import (
 )
 from cardume.compiler.compiled import cached, source_stamp
 from cardume.compiler.reach import fingerprint, is_recursive, with_compiled_helpers
+from cardume.compiler.records import flattened, read_record, size_of
 from cardume.errors import LawError
-
-
-class Unit(NamedTuple):
-    """The unit of a parameter, as the mission file spells it."""
-
-    symbol: str
-
-
-class Bounds(NamedTuple):
-    """Closed bounds of a parameter, unless an end is marked open."""
-
-    low: float = -math.inf
-    high: float = math.inf
-    low_open: bool = False
-    high_open: bool = False
-
-
-class Length(NamedTuple):
-    """How many numbers a memory field of rows holds."""
-
-    size: int
-
-
-Number = Annotated[float, Unit("")]
-Meters = Annotated[float, Unit("m")]
-Radians = Annotated[float, Unit("rad")]
-RadiansPerSecond = Annotated[float, Unit("rad/s")]
-Seconds = Annotated[float, Unit("s")]
-MetersPerSecond = Annotated[float, Unit("m/s")]
-PerSecond = Annotated[float, Unit("1/s")]
-PerSecondSquared = Annotated[float, Unit("1/s^2")]
-Kilograms = Annotated[float, Unit("kg")]
-Newtons = Annotated[float, Unit("N")]
-NewtonMeters = Annotated[float, Unit("N m")]
-
-T = TypeVar("T")
-Positive = Annotated[T, Bounds(0.0, math.inf, low_open=True)]
-NotNegative = Annotated[T, Bounds(0.0)]
-Probability = Annotated[float, Unit(""), Bounds(0.0, 1.0)]
-
-
-class Parameter(NamedTuple):
-    """What a mission file may set in a law."""
-
-    name: str
-    default: float
-    unit: str = ""
-    low: float = -math.inf
-    high: float = math.inf
-    low_open: bool = False
-    high_open: bool = False
-
-    def accepts(self, value: float) -> bool:
-        """Whether a value lies within the bounds."""
-        above = value > self.low if self.low_open else value >= self.low
-        below = value < self.high if self.high_open else value <= self.high
-        return above and below
+from cardume.parameters import (
+    Bounds as Bounds,
+)
+from cardume.parameters import (
+    Kilograms as Kilograms,
+)
+from cardume.parameters import (
+    Length as Length,
+)
+from cardume.parameters import (
+    Meters as Meters,
+)
+from cardume.parameters import (
+    MetersPerSecond as MetersPerSecond,
+)
+from cardume.parameters import (
+    NewtonMeters as NewtonMeters,
+)
+from cardume.parameters import (
+    Newtons as Newtons,
+)
+from cardume.parameters import (
+    NotNegative as NotNegative,
+)
+from cardume.parameters import (
+    Number as Number,
+)
+from cardume.parameters import (
+    Once as Once,
+)
+from cardume.parameters import (
+    Parameter as Parameter,
+)
+from cardume.parameters import (
+    PerSecond as PerSecond,
+)
+from cardume.parameters import (
+    PerSecondSquared as PerSecondSquared,
+)
+from cardume.parameters import (
+    Positive as Positive,
+)
+from cardume.parameters import (
+    Probability as Probability,
+)
+from cardume.parameters import (
+    Radians as Radians,
+)
+from cardume.parameters import (
+    RadiansPerSecond as RadiansPerSecond,
+)
+from cardume.parameters import (
+    Seconds as Seconds,
+)
+from cardume.parameters import (
+    Unit as Unit,
+)
+from cardume.parameters import (
+    note_in,
+    parameter_of,
+    parameters_of,
+)
+from cardume.trial import fits, last_words, same, sample, shape
 
 
 class LawBook(NamedTuple):
@@ -216,6 +223,9 @@ class Law:
         self.memory_type: Any = None
         self.parameters: tuple[Parameter, ...] = ()
         self.announced: dict[str, dict[str, float]] = {}  # by family: what its laws' defaults are beside this law
+        self.constants_type: Any = None
+        self._constants_of: Callable[..., Any] | None = None
+        self._constants_name, self._num_own = "", 0
         self._given: list[str] = []
         self._read_signature()
         self.__name__, self.__qualname__, self.__doc__ = self.name, function.__qualname__, function.__doc__
@@ -223,6 +233,13 @@ class Law:
         self._kept: list[Any] = []  # compiled code lives as long as this object
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
+        """Call it in plain Python; what it wants computed from parameters may be given as those."""
+        if self._constants_of is None:
+            return self.function(*arguments, **named)
+        values = {p.name: named.pop(p.name, p.default) for p in self._computed_from()}
+        given = inspect.signature(self.function).bind_partial(*arguments, **named).arguments
+        if self._constants_name not in given:
+            named[self._constants_name] = self._constants_of(dt=given["dt"], **values)
         return self.function(*arguments, **named)
 
     def __repr__(self) -> str:
@@ -236,12 +253,18 @@ class Law:
     def _read_signature(self) -> None:
         hints = typing.get_type_hints(self.function, include_extras=True)
         own: list[Parameter] = []
+        first: list[Parameter] = []
         for argument in inspect.signature(self.function).parameters.values():
             hint = hints.get(argument.name, float)
             if hint in self._family.signals and hint is not float:
                 self._given.append(f"signal_{self._family.signals.index(hint)}")
             elif argument.name == "dt":
                 self._given.append("dt")
+            elif (once := note_in(hint, Once)) is not None:
+                self._constants_of, self._constants_name = once.function, argument.name
+                self.constants_type = hint.__origin__
+                first = parameters_of(once.function)
+                self._given.append("constants")
             elif hasattr(hint, "_fields"):
                 self._accept_memory(hint)
             elif argument.default is argument.empty:
@@ -250,10 +273,11 @@ class Law:
                     f" annotation of one of the family's signals: {self._signal_names()}"
                 )
             else:
-                self._given.append(f"load(gains, {len(own)})")
-                own.append(_parameter(argument.name, argument.default, hint))
+                self._given.append(f"load_fixed(gains, {len(own)})")
+                own.append(parameter_of(argument.name, argument.default, hint))
         shared = [COMMON[name]._replace(default=value) for name, value in self.common.items()]
-        self.parameters = (*own, *shared)
+        self._num_own = len(own)
+        self.parameters = (*own, *first, *shared)
 
     def _accept_memory(self, hint: Any) -> None:
         if self.memory_type is not None:
@@ -276,14 +300,29 @@ class Law:
         """Whether the law takes a signal of its family."""
         return f"signal_{self._family.signals.index(signal)}" in self._given
 
-    def gains(self, **named: float) -> np.ndarray:
-        """The row of gains: defaults overridden by name, checked against their bounds.
+    @property
+    def doc_of_parameters(self) -> str:
+        """The docstring that says what the parameters are: the law's, or that of what computes of them."""
+        return str((self._constants_of or self.function).__doc__ or "")
+
+    def _computed_from(self) -> tuple[Parameter, ...]:
+        """The parameters of which something is computed once."""
+        return self.parameters[self._num_own : len(self.parameters) - len(self.common)]
+
+    @property
+    def gains_width(self) -> int:
+        """How many numbers the law reads in flight: its parameters, or what is computed of them."""
+        return self._num_own + (size_of(self.constants_type) if self.constants_type else 0)
+
+    def gains(self, dt: float, **named: float) -> np.ndarray:
+        """What the law reads in flight, from its parameters: defaults overridden by name, checked against their bounds.
 
         Args:
+            dt: [s] between two calls.
             named: [any] values of parameters, in the parameter's unit.
 
         Returns:
-            (number of parameters,) array.
+            (gains_width,) array.
 
         Raises:
             LawError: unknown name or a value out of bounds.
@@ -295,11 +334,10 @@ class Law:
             if not known[name].accepts(value):
                 p = known[name]
                 raise LawError(f"law '{self.name}': {name} = {value} {p.unit} is outside {p.low} to {p.high}")
-        return np.array([float(named.get(p.name, p.default)) for p in self.parameters])
-
-    def column(self, parameter: str) -> int:
-        """The place of a parameter in the row of gains."""
-        return [p.name for p in self.parameters].index(parameter)
+        own = [named.get(p.name, p.default) for p in self.parameters[: self._num_own]]
+        values = {p.name: float(named.get(p.name, p.default)) for p in self._computed_from()}
+        constants = self._constants_of(dt=dt, **values) if self._constants_of else ()
+        return np.array([*own, *flattened(constants)], float)
 
     def initial_memory(self) -> np.ndarray:
         """(width,) array of the memory at the start of a mission."""
@@ -341,7 +379,7 @@ class Law:
             wrapper = cached(self._wrapper(rows), signature, keep=not is_recursive(self.function))
         except NumbaError as problem:
             raise LawError(
-                f"{self.family} law '{self.name}' does not compile: {_last_words(problem)}\n"
+                f"{self.family} law '{self.name}' does not compile: {last_words(problem)}\n"
                 f"A law is plain scalar Python: numbers, records, `if`, loops, and functions of cardume.maths."
             ) from problem
         self._kept.append(wrapper)
@@ -357,7 +395,11 @@ class Law:
                 slots.append(f"load(memory, {first})")
                 stores.append(f"    store(memory, {first}, after.{field})")
             first += int(np.size(start))
-        given = ", ".join(f"Memory({', '.join(slots)})" if g == "memory" else g for g in self._given)
+        scope: dict[str, Any] = {"__name__": __name__}
+        records = {"memory": f"Memory({', '.join(slots)})"}
+        if self.constants_type is not None:
+            records["constants"] = read_record(self.constants_type, "gains", self._num_own, scope)
+        given = ", ".join(records.get(g, g) for g in self._given)
         call = f"    answer, after = law({given})" if stores else f"    answer = law({given})"
         if self.memory_type is not None and not stores:
             call = f"    answer, after = law({given})"
@@ -365,9 +407,10 @@ class Law:
         body = "\n".join([call, *stores, "    return as_answer(memory, answer)"])
         made_of = source_stamp() + ("" if self.is_builtin else fingerprint(self.function, body))
         name = f"{self.family}_{self.name}_{made_of}_{rows.name}"
-        scope = {"__name__": __name__, "law": with_compiled_helpers(self.function), "Memory": self.memory_type}
+        scope |= {"law": with_compiled_helpers(self.function), "Memory": self.memory_type}
         scope |= {
             "load": load,
+            "load_fixed": load_fixed,
             "store": store,
             "at": at,
             "as_answer": law_answer(self._family.result, self._family.plain),
@@ -377,11 +420,11 @@ class Law:
 
     def _try_once(self) -> None:
         """Call a user's law in Python and look at what it returns, before Numba says it in its own words."""
-        required = f"it must return {_shape(self._family)}"
+        required = f"it must return {shape(float if self._family.plain else self._family.result)}"
         if self.memory_type is not None:
             required += f" and the next {self.memory_type.__name__}, as a pair"
         if self._family.plain:
-            required += f" (or {_record_shape(self._family.result)} in the number's place)"
+            required += f" (or {shape(self._family.result)} in the number's place)"
         try:
             first, second = self._sample_call(), self._sample_call()
         except Exception as problem:
@@ -394,9 +437,9 @@ class Law:
             if not (isinstance(first, tuple) and len(first) == 2 and isinstance(first[1], self.memory_type)):
                 raise LawError(f"{self.family} law '{self.name}' returned {first!r}; {required}")
             answer = first[0]
-        if not (_fits(answer, self._family.result) or (self._family.plain and _fits(answer, float))):
+        if not (fits(answer, self._family.result) or (self._family.plain and fits(answer, float))):
             raise LawError(f"{self.family} law '{self.name}' returned {answer!r}; {required}")
-        if not _same(first, second):
+        if not same(first, second):
             raise LawError(
                 f"{self.family} law '{self.name}' gave {first!r}, then {second!r}, for the same input:"
                 f" a law is a pure function of its arguments"
@@ -410,9 +453,11 @@ class Law:
         return answer if plain is None or isinstance(answer, tuple) else self._family.result(**{plain: answer})
 
     def _sample_call(self) -> Any:
-        samples: dict[str, Any] = {f"signal_{k}": _sample(kind) for k, kind in enumerate(self._family.signals)}
+        samples: dict[str, Any] = {f"signal_{k}": sample(kind) for k, kind in enumerate(self._family.signals)}
         fresh = [np.array(v) if np.ndim(v) else v for v in self.memory_type()] if self.memory_type else []
         samples |= {"dt": 0.1, "memory": self.memory_type(*fresh) if self.memory_type else None}
+        if self._constants_of is not None:
+            samples["constants"] = self._constants_of(dt=0.1, **{p.name: p.default for p in self._computed_from()})
         defaults = iter(p.default for p in self.parameters)
         return self.function(*[samples[g] if g in samples else next(defaults) for g in self._given])
 
@@ -434,54 +479,6 @@ def _rebuild(data: bytes) -> Law:
 
     family, function, common = cloudpickle.loads(data)
     return Law(_families[family], function, common)
-
-
-def _parameter(name: str, default: Any, hint: Any) -> Parameter:
-    unit, bounds = "", Bounds()
-    for note in getattr(hint, "__metadata__", ()):
-        if isinstance(note, Unit):
-            unit = note.symbol
-        elif isinstance(note, Bounds):
-            bounds = note
-    return Parameter(name, float(default), unit, *bounds)
-
-
-def _sample(kind: Any) -> Any:
-    """Plausible, unremarkable input: every number 0.5, every table a few zeros."""
-    if kind is float:
-        return 0.5
-    rows = {f for f, hint in kind.__annotations__.items() if hint in (Rows, SharedRows)}
-    return kind(*[np.zeros(256) if f in rows else 0.5 for f in kind._fields])
-
-
-def _fits(answer: Any, result: Any) -> bool:
-    if result is float:
-        return isinstance(answer, (int, float, np.floating)) and not isinstance(answer, bool)
-    return isinstance(answer, result)
-
-
-def _same(first: Any, second: Any) -> bool:
-    def numbers(value: Any) -> Iterable[float]:
-        return [x for part in value for x in numbers(part)] if np.ndim(value) else [float(value)]
-
-    if isinstance(first, tuple):
-        return len(first) == len(second) and all(_same(a, b) for a, b in zip(first, second, strict=True))
-    return np.array_equal(list(numbers(first)), list(numbers(second)), equal_nan=True)
-
-
-def _shape(family: Family) -> str:
-    return "a number" if family.result is float or family.plain else _record_shape(family.result)
-
-
-def _record_shape(record: Any) -> str:
-    return f"{record.__name__}({', '.join(record._fields)})"
-
-
-def _last_words(problem: Exception) -> str:
-    """The part of Numba's message that is about the user's code."""
-    lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
-    telling = [x for x in lines if x.startswith(("Unknown attribute", "Untyped global", "No implementation", "File "))]
-    return "; ".join(telling[:3] or lines[:3])
 
 
 def all_families() -> dict[str, dict[str, Law]]:

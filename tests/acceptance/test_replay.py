@@ -168,7 +168,7 @@ def answer(tables: Tables, moment: Moment) -> tuple[np.ndarray, np.ndarray]:
 
 
 def others_hidden(tables: Tables, vehicle: int) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """Make the other vehicles' minds, acquaintances, gains and memories NaN, and say how to bring them back."""
+    """Make the other vehicles' minds, what they know, gains and memories NaN, and say how to bring them back."""
     size, found = tables.whole.size, []
     widths = {"minds": OWN_WIDTH, "others": size * OTHERS_WIDTH, "gains": -1, "memory": -1}
     for name, width in widths.items():

@@ -24,6 +24,7 @@ from cardume.laws import (
     Meters,
     NotNegative,
     Number,
+    Once,
     Positive,
     Seconds,
     Unit,
@@ -104,9 +105,9 @@ def test_a_sensor_has_a_period_and_a_latency_beside_its_own_parameters() -> None
         return GnssReading(truth.north, truth.east)
 
     assert [(p.name, p.default) for p in mine.parameters] == [("sigma", 1.0), ("period", 2.0), ("latency", 0.3)]
-    assert mine.gains(latency=0.0).tolist() == [1.0, 2.0, 0.0]
+    assert mine.gains(0.1, latency=0.0).tolist() == [1.0]  # the engine keeps the other two
     with pytest.raises(LawError, match=r"period = 0.0 s is outside"):
-        mine.gains(period=0.0)
+        mine.gains(0.1, period=0.0)
 
 
 def test_every_family_has_a_place_and_at_least_one_law() -> None:
@@ -120,27 +121,68 @@ def test_every_family_has_a_place_and_at_least_one_law() -> None:
             assert (law.family, law.name) == (family, name)
 
 
+# ---- what is computed once -------------------------------------------------------------------------------------------
+
+
+class Inner(NamedTuple):
+    doubled: float
+    halved: float
+
+
+class Ready(NamedTuple):
+    inner: Inner
+    of_step: float
+
+
+def ready(dt: float, width: Positive[Meters] = 4.0, rate: NotNegative[Number] = 3.0) -> Ready:
+    return Ready(Inner(2.0 * width, 0.5 * width), rate * dt)
+
+
+@guidance_law
+def prepared(error: PathError, dt: Seconds, ready: Annotated[Ready, Once(ready)], plain: Number = 1.0) -> float:
+    return error.cross_track * ready.inner.doubled + ready.inner.halved + ready.of_step + plain
+
+
+def test_what_a_law_wants_computed_once_is_of_its_parameters() -> None:
+    assert [(p.name, p.default, p.unit) for p in prepared.parameters] == [
+        ("plain", 1.0, ""),
+        ("width", 4.0, "m"),
+        ("rate", 3.0, ""),
+    ]
+    assert prepared.gains(0.5).tolist() == [1.0, 8.0, 2.0, 1.5]
+    assert prepared.gains(0.5, width=1.0, plain=7.0).tolist() == [7.0, 2.0, 0.5, 1.5]
+    assert prepared.gains_width == 4
+    with pytest.raises(LawError, match=r"'prepared': width = 0.0 m is outside"):
+        prepared.gains(0.5, width=0.0)
+
+
+def test_it_may_be_given_by_its_parameters_or_whole() -> None:
+    error = PathError(cross_track=10.0)
+    assert prepared(error, 0.5) == 10.0 * 8.0 + 2.0 + 1.5 + 1.0
+    assert prepared(error, dt=0.5, width=1.0, plain=0.0) == 10.0 * 2.0 + 0.5 + 1.5
+    assert prepared(error, 0.5, ready(0.5, rate=0.0)) == 10.0 * 8.0 + 2.0 + 1.0
+
+
 # ---- gains -----------------------------------------------------------------------------------------------------------
 
 
 def test_gains_are_the_defaults_overridden_by_name() -> None:
-    assert rich.gains().tolist() == [5.0, 0.5, -1.0]
-    assert rich.gains(plain=3.0, lookahead=1e-9).tolist() == [1e-9, 0.5, 3.0]
-    assert [rich.column(n) for n in ("lookahead", "share", "plain")] == [0, 1, 2]
+    assert rich.gains(0.1).tolist() == [5.0, 0.5, -1.0]
+    assert rich.gains(0.1, plain=3.0, lookahead=1e-9).tolist() == [1e-9, 0.5, 3.0]
 
 
 @pytest.mark.parametrize("values", [{"share": 1.0}, {"share": -1e-9}, {"lookahead": 0.0}, {"lookahead": float("nan")}])
 def test_gains_out_of_bounds_are_refused(values: dict[str, float]) -> None:
     (name, value), *_ = values.items()
     with pytest.raises(LawError, match=rf"'rich': {name} = {re.escape(str(value))} .*is outside"):
-        rich.gains(**values)
+        rich.gains(0.1, **values)
 
 
 def test_gains_of_another_name_are_refused() -> None:
     with pytest.raises(
         LawError, match=r"'rich' has no parameter \['look_ahead'\]; it has \['lookahead', 'plain', 'share'\]"
     ):
-        rich.gains(look_ahead=1.0)
+        rich.gains(0.1, look_ahead=1.0)
 
 
 # ---- what is no law --------------------------------------------------------------------------------------------------
@@ -285,7 +327,7 @@ def book_of(law: Law, slots: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     handles = np.zeros(len(FAMILIES) * 4, np.int64)
     handles[:4] = law.handle(), 2, 3, width  # guidance is the first family
     memory = np.concatenate([np.full(3, np.nan), *[law.initial_memory()] * slots, np.full(3, np.nan)])
-    return handles, np.concatenate([np.full(2, np.nan), law.gains(), np.full(2, np.nan)]), memory
+    return handles, np.concatenate([np.full(2, np.nan), law.gains(0.1), np.full(2, np.nan)]), memory
 
 
 def test_a_law_with_a_ring_keeps_its_memory_in_the_table_slot_by_slot() -> None:

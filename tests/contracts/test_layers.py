@@ -57,7 +57,7 @@ def skeleton(tmp_path: Path) -> Path:
     for folder in ("", *FOLDERS, *(f"onboard/{family}" for family in FAMILIES)):
         (package / folder).mkdir(parents=True)
         (package / folder / "__init__.py").touch()
-    for module in ("signals", "laws", "units", "errors", "onboard/agent"):
+    for module in ("signals", "laws", "trial", "parameters", "units", "errors", "onboard/agent"):
         (package / f"{module}.py").touch()
     return tmp_path
 

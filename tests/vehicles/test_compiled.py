@@ -10,15 +10,17 @@ from numba import config, njit
 from cardume.compiler import WIDTH, at, load, rows_of, store
 from cardume.laws import Law
 from cardume.onboard.control import feedforward_pid, none
-from cardume.onboard.control.feedforward_pid import Helm
+from cardume.onboard.control.feedforward_pid import Helm, pilot_of
 from cardume.onboard.estimation.speed import proportional, thruster_calibration
 from cardume.signals import NOTHING, Command, Feedback, Reference, ShaftReading, VesselState, Water
 from cardume.vehicles import kinematic, medusa
+from cardume.vehicles.medusa import medusa_plant
 from cardume.vehicles.thrusters import SLOTS, Thrusters
 
 VESSEL, HELM, RING = len(VesselState._fields), len(Helm._fields), len(Thrusters._fields) - 1
 RING_AT = VESSEL + HELM + RING
 WIDE = RING_AT + 3 * SLOTS
+PILOT, PLANT = pilot_of(0.05), medusa_plant(0.05)
 
 
 def records(name: str, width: int, first: int) -> str:
@@ -32,7 +34,7 @@ def flight(*compile_laws: Callable[..., Any]) -> Callable[..., None]:
     stores = [f"{name}.{field}" for name, names in fields.items() for field in names]
     source = "\n".join(
         [
-            "def fly(table, references, num_steps):",
+            "def fly(table, references, num_steps, pilot, plant):",
             "    rows, asked = rows_of(table), rows_of(references)",
             "    for step in range(num_steps):",
             f"        v = {records('VesselState', VESSEL, 0)})",
@@ -41,8 +43,8 @@ def flight(*compile_laws: Callable[..., Any]) -> Callable[..., None]:
             "        surge = read(ShaftReading(v.shaft_speed))",
             "        wanted = load(asked, 0), load(asked, 1), load(asked, 2)",
             "        f = Feedback(v.heading, v.yaw_rate, surge, v.depth, wanted[0], wanted[1], wanted[2], NOTHING)",
-            "        command, h = steer(f, h, 0.05)",
-            "        v, t = move(v, command, Water(load(asked, 3), load(asked, 4)), t, 0.05)",
+            "        command, h = steer(f, h, 0.05, pilot)",
+            "        v, t = move(v, command, Water(load(asked, 3), load(asked, 4)), t, 0.05, plant)",
             *[f"        store(rows, {k}, {value})" for k, value in enumerate(stores)],
         ]
     )
@@ -67,7 +69,6 @@ def missions() -> tuple[np.ndarray, np.ndarray]:
     table = np.zeros((WIDE, WIDTH))
     table[4] = rng.uniform(0.0, 0.8, WIDTH)  # surge
     table[3] = rng.uniform(-4.0, 4.0, WIDTH)
-    table[VESSEL + HELM + 6 : RING_AT] = 1.0  # what a plant step does, before the first one
     asked = rng.uniform([-3.0, 0.0, 0.0, -0.2, -0.2], [3.0, 1.0, 20.0, 0.2, 0.2], (WIDTH, 5)).T
     return table, np.ascontiguousarray(asked)
 
@@ -80,15 +81,15 @@ def test_python_one_mission_and_lanes_agree_to_the_last_bit() -> None:
     compiled = njit(error_model="numpy")(flight(*(njit(error_model="numpy")(law.function) for law in laws)))
     table, asked = missions()
     wide = table.copy()
-    compiled(wide, asked, 300)
+    compiled(wide, asked, 300, PILOT, PLANT)
     assert np.isfinite(wide).all()
     assert np.ptp(wide[:VESSEL], axis=1).all()  # eight different missions
     for lane in range(WIDTH):
         one = np.ascontiguousarray(table[:, lane])
-        compiled(one, np.ascontiguousarray(asked[:, lane]), 300)
+        compiled(one, np.ascontiguousarray(asked[:, lane]), 300, PILOT, PLANT)
         assert np.array_equal(one, wide[:, lane])
     interpreted = np.ascontiguousarray(table[:, lane])
-    plain(interpreted, np.ascontiguousarray(asked[:, lane]), 300)
+    plain(interpreted, np.ascontiguousarray(asked[:, lane]), 300, PILOT, PLANT)
     assert np.array_equal(one, interpreted)
 
 

@@ -19,11 +19,14 @@ from cardume.vehicles.medusa_data import (
 from cardume.vehicles.thrusters import (
     SLOTS,
     ShaftSpeeds,
+    ThrusterPlant,
     Thrusters,
     allocate,
+    shaft_speed_for,
     smallest_plant_step,
     started_thrusters,
     thruster_force,
+    thruster_plant,
     turned_shafts,
 )
 from vehicles.rig import NEWTONS_PER_RPM2, fresh
@@ -34,19 +37,17 @@ LARGEST = NEWTONS_PER_RPM2 * 4500.0**2
 
 def share(thrust: float, moment: float, down: float = 0.0) -> tuple[float, float, float]:
     """Forces that the thrusters are told to make."""
-    shafts = allocate(
-        Command(thrust, moment, down),
-        THRUSTER_ARM,
-        THRUST_COEFFICIENT,
-        MAX_SHAFT_SPEED,
-        DEAD_ZONE * MAX_SHAFT_SPEED,
-    )
+    shafts = allocate(Command(thrust, moment, down), plant_with(0.05))
     port, starboard, vertical = (thruster_force(n, THRUST_COEFFICIENT) for n in shafts)
     return port, starboard, vertical
 
 
-def started(dt: float, delay: float = MOTOR_DELAY, force: float = 0.0) -> Thrusters:
-    return started_thrusters(fresh(), force, THRUST_COEFFICIENT, dt, MOTOR_POLE, delay)
+def plant_with(dt: float, delay: float = MOTOR_DELAY) -> ThrusterPlant:
+    return thruster_plant(dt, THRUST_COEFFICIENT, MAX_SHAFT_SPEED, DEAD_ZONE, MOTOR_POLE, delay, THRUSTER_ARM)
+
+
+def started(force: float = 0.0) -> Thrusters:
+    return started_thrusters(fresh(), shaft_speed_for(force, 1.0 / THRUST_COEFFICIENT, 0.0))
 
 
 def test_farols_thruster_curve() -> None:
@@ -99,9 +100,9 @@ def test_the_dead_zone_is_86_permille_of_the_shaft_speed() -> None:
 
 def respond(commands: list[float], dt: float, delay: float) -> list[tuple[float, float]]:
     """Speeds of the port shaft halfway through each step and at its end."""
-    memory, seen = started(dt, delay), []
+    memory, plant, seen = started(), plant_with(dt, delay), []
     for command in commands:
-        middle, memory = turned_shafts(memory, ShaftSpeeds(command, -command, 2.0 * command))
+        middle, memory = turned_shafts(memory, ShaftSpeeds(command, -command, 2.0 * command), plant)
         assert middle.starboard == -middle.port
         assert memory.vertical == pytest.approx(2.0 * memory.port, abs=1e-12)
         seen.append((middle.port, memory.port))
@@ -136,14 +137,14 @@ def test_nothing_turns_before_the_delay_is_over() -> None:
 
 
 def test_a_vehicle_that_starts_moving_starts_with_the_thrusters_for_it() -> None:
-    memory = started(0.05, force=3.0)
+    memory, plant = started(force=3.0), plant_with(0.05)
     for _ in range(6):
-        _, memory = turned_shafts(memory, ShaftSpeeds(0.0, 0.0, 0.0))
+        _, memory = turned_shafts(memory, ShaftSpeeds(0.0, 0.0, 0.0), plant)
         assert thruster_force(memory.port, THRUST_COEFFICIENT) == pytest.approx(3.0)
     for _ in range(100):
-        _, memory = turned_shafts(memory, ShaftSpeeds(0.0, 0.0, 0.0))
+        _, memory = turned_shafts(memory, ShaftSpeeds(0.0, 0.0, 0.0), plant)
     assert memory.port == pytest.approx(0.0, abs=1e-9)
-    assert started_thrusters(memory, 9.0, THRUST_COEFFICIENT, 0.05, MOTOR_POLE, 0.0) == memory
+    assert started_thrusters(memory, 9.0) == memory
 
 
 def test_a_delay_longer_than_the_ring_is_not_silently_shortened() -> None:
@@ -151,5 +152,5 @@ def test_a_delay_longer_than_the_ring_is_not_silently_shortened() -> None:
     assert shortest == pytest.approx(MOTOR_DELAY / (SLOTS - 1))
     fine = respond([100.0] * 70, shortest * (1.0 + 1e-9), MOTOR_DELAY)
     assert np.isfinite(fine).all()
-    _, memory = turned_shafts(started(0.9 * shortest), ShaftSpeeds(100.0, 100.0, 100.0))
+    _, memory = turned_shafts(started(), ShaftSpeeds(100.0, 100.0, 100.0), plant_with(0.9 * shortest))
     assert math.isnan(memory.port)

@@ -14,7 +14,20 @@ from cardume.compiler.lanes import (
     where,
 )
 from cardume.compiler.records import Layout
-from cardume.compiler.rows import Rows, SharedRows, at, by_width, gather, load, ramp, rows_of, scatter, spill, store
+from cardume.compiler.rows import (
+    Rows,
+    SharedRows,
+    at,
+    by_width,
+    gather,
+    load,
+    load_fixed,
+    ramp,
+    rows_of,
+    scatter,
+    spill,
+    store,
+)
 
 __all__ = [
     "WIDTH",
@@ -28,6 +41,7 @@ __all__ = [
     "floor",
     "gather",
     "load",
+    "load_fixed",
     "negate",
     "ramp",
     "rows_of",

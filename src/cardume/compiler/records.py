@@ -4,6 +4,7 @@ A record is a `NamedTuple` of floats.  A `Layout` says at which rows of an owner
 each record lies, and makes the functions that read and write it there; raw indices live only here.
 """
 
+import typing
 from collections.abc import Callable
 from typing import Any
 
@@ -88,3 +89,33 @@ def _places(c: Any, b: Any, signature: Any, arguments: Any, width: int, start: i
     first = b.add(b.mul(owner, ir.Constant(INT64, width)), ir.Constant(INT64, start))
     rows = [b.add(first, ir.Constant(INT64, k)) for k in range(size)]
     return [row_address(c, b, signature.args[0], table, row) for row in rows]
+
+
+def size_of(kind: Any) -> int:
+    """How many numbers a record holds, those of records in it counted one by one."""
+    return sum(size_of(inner) for inner in typing.get_type_hints(kind).values()) if hasattr(kind, "_fields") else 1
+
+
+def flattened(value: Any) -> list[float]:
+    """The numbers of a record, those of records in it one by one."""
+    return [x for part in value for x in flattened(part)] if isinstance(value, tuple) else [float(value)]
+
+
+def read_record(kind: Any, table: str, first: int, scope: dict[str, Any]) -> str:
+    """Source text that reads a record, of numbers and of records, from a table.
+
+    Args:
+        kind: the class of the record; its fields' names are in the text, so that one of other fields is another text.
+        table: [-] name of the table in the text.
+        first: [-] row of its first number.
+        scope: [-] where the text finds the classes; they are added.
+    """
+    if not hasattr(kind, "_fields"):
+        return f"load_fixed({table}, {first})"
+    name = f"{kind.__name__}_{len(scope)}"
+    scope[name] = kind
+    parts = []
+    for field, inner in typing.get_type_hints(kind).items():
+        parts.append(f"{field}={read_record(inner, table, first, scope)}")
+        first += size_of(inner)
+    return f"{name}({', '.join(parts)})"

@@ -140,11 +140,30 @@ def _load(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
     return load_row(b, signature.args[0], row_address(c, b, signature.args[0], *arguments))
 
 
-def load_row(b: Any, kind: Any, place: Any) -> Any:
-    """LLVM code that reads the row at an address."""
-    if kind is LANE_ROWS:
-        return b.load(b.bitcast(place, DOUBLES.as_pointer()), align=8)
-    return b.load(place)
+def load_row(b: Any, kind: Any, place: Any, is_fixed: bool = False) -> Any:
+    """LLVM code that reads the row at an address; a fixed one may be read again instead of kept in a register."""
+    value = b.load(b.bitcast(place, DOUBLES.as_pointer()), align=8) if kind is LANE_ROWS else b.load(place)
+    if is_fixed:
+        value.set_metadata("invariant.load", b.module.add_metadata([]))
+    return value
+
+
+def load_fixed(table: Rows, k: int) -> Any:
+    """Row k of a table that nobody writes during a mission.
+
+    Args:
+        table: (n,) rows.
+        k: [-] a whole number, the same in all lanes.
+
+    Returns:
+        The number there; eight of them from lane rows.
+    """
+    return table[k]
+
+
+@primitive(load_fixed, lambda table, k: ELEMENTS[table](table, types.int64) if table in ELEMENTS else None)
+def _load_fixed(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    return load_row(b, signature.args[0], row_address(c, b, signature.args[0], *arguments), is_fixed=True)
 
 
 def store_row(b: Any, kind: Any, place: Any, value: Any) -> None:

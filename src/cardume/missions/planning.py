@@ -332,9 +332,9 @@ def _trimmed(model: Choice, speed: float) -> float:
     given |= {"reference": Reference(speed=speed), "dt": TRIM_STEP, **model.parameters}
     if law.memory_type is not None:
         given["memory"] = law.memory_type(*(np.array(v) if np.ndim(v) else v for v in law.memory_type()))
-    names = inspect.signature(law.function).parameters
+    names = {*inspect.signature(law.function).parameters, *(p.name for p in law.parameters)}
     try:
-        answer = law.function(**{name: value for name, value in given.items() if name in names})
+        answer = law(**{name: value for name, value in given.items() if name in names})
     except Exception:  # a user's model; it is told what is wrong when it is compiled
         return 0.0
     return float((answer[0] if law.memory_type is not None else answer).shaft_speed)

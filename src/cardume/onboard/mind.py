@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 from cardume.compiler import Layout, Rows, at, compiled, load
 from cardume.laws import LawBook
+from cardume.paths.table import PathPlace
 from cardume.signals import NOTHING, DvlReading, Report, Sighting, Water
 
 LONG_AGO = -1e9  # [s] before any mission
@@ -121,21 +122,34 @@ class Correction(NamedTuple):
     speed: float = 0.0  # [m/s]
 
 
-class Acquaintance(NamedTuple):
-    """What a vehicle knows of one other."""
+class News(NamedTuple):
+    """What was last learnt of how far along the formation another vehicle is."""
 
-    state: float = NOTHING  # [m] last known coordination state
-    path_speed: float = 0.0  # [m/s] and its rate
+    state: float = NOTHING  # [m] its coordination state
+    path_speed: float = 0.0  # [m/s] and the rate of that
     time_of_validity: float = LONG_AGO  # [s]
-    is_new: float = 0.0  # [-] 1 when this was learnt in this tick
-    predicted: float = NOTHING  # [m] coordination state now
+    phase: float = 4.0  # [-] of its mission, as it last said
+
+
+class Fresh(NamedTuple):
+    """Whether there are news of another vehicle."""
+
+    is_new: float = 0.0  # [-] 1 when they came in this tick
+
+
+class Outlook(NamedTuple):
+    """What another vehicle is thought to do meanwhile."""
+
+    state: float = NOTHING  # [m] its coordination state now
     correction: float = 0.0  # [m/s] what coordination makes it do
-    north: float = NOTHING  # [m] where it was seen
+
+
+class LastSeen(NamedTuple):
+    """Where another vehicle was seen."""
+
+    north: float = NOTHING  # [m]
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when
-    segment: float = 0.0  # [-] of its own path, where it was seen
-    arc_length: float = 0.0  # [m]
-    phase: float = 4.0  # [-] of its mission, as it last said
 
 
 class Mind(NamedTuple):
@@ -145,7 +159,7 @@ class Mind(NamedTuple):
     own: Rows  # the records of OWN
     orders: Rows  # Orders, then the points of v_L, of depth, and the corners of the geofence
     features: Any  # Ints (NUM_FEATURES,)
-    others: Rows  # (vehicle, Acquaintance)
+    others: Rows  # (vehicle, the records of OTHERS)
     paths: Rows  # path tables of all vehicles
     path_starts: Any  # Ints (vehicle,) where each path table begins
     neighbors: Any  # Ints (vehicle, list) whom each vehicle coordinates with
@@ -175,8 +189,13 @@ get_sounding, put_sounding = OWN.reader(Sounding), OWN.writer(Sounding)
 
 OWN_WIDTH = OWN.width
 
-OTHERS = Layout(Acquaintance)
-get_acquaintance, put_acquaintance = OTHERS.reader(Acquaintance), OTHERS.writer(Acquaintance)
+# What a vehicle knows of one other; the place is where on its own path that one was seen.
+OTHERS = Layout(News, Fresh, Outlook, LastSeen, PathPlace)
+get_news, put_news = OTHERS.reader(News), OTHERS.writer(News)
+get_fresh, put_fresh = OTHERS.reader(Fresh), OTHERS.writer(Fresh)
+get_outlook, put_outlook = OTHERS.reader(Outlook), OTHERS.writer(Outlook)
+get_last_seen, put_last_seen = OTHERS.reader(LastSeen), OTHERS.writer(LastSeen)
+get_seen_place, put_seen_place = OTHERS.reader(PathPlace), OTHERS.writer(PathPlace)
 
 OTHERS_WIDTH = OTHERS.width
 

@@ -9,12 +9,19 @@ from cardume.onboard.estimation.neighbors import predict
 from cardume.onboard.messaging import decide_to_send
 from cardume.onboard.mind import (
     HAS_PHASES,
-    Acquaintance,
+    Fresh,
+    LastSeen,
     Mind,
+    News,
+    Outlook,
     Speech,
-    get_acquaintance,
     get_along,
+    get_fresh,
+    get_last_seen,
+    get_news,
+    get_outlook,
     get_progress,
+    get_seen_place,
     get_setup,
     get_speech,
     head_of,
@@ -22,14 +29,17 @@ from cardume.onboard.mind import (
     message_from,
     neighbors_of,
     path_of,
-    put_acquaintance,
+    put_fresh,
+    put_last_seen,
+    put_news,
+    put_outlook,
+    put_seen_place,
     put_speech,
     sighting_in,
 )
 from cardume.onboard.pace import pace_gained, pace_of_neighbor
 from cardume.onboard.phases import is_waiting, takes_part
 from cardume.paths.projection import project
-from cardume.paths.table import PathPlace
 from cardume.signals import (
     NOTHING,
     Disagreement,
@@ -47,7 +57,7 @@ USBL_WIDTH = 4  # range, azimuth, elevation, age
 
 
 class Said(NamedTuple):
-    """What a vehicle tells the others: a report and, from a vehicle with a USBL head, its acquaintances."""
+    """What a vehicle tells the others: a report and, from a vehicle with a USBL head, what it knows of the others."""
 
     report: Report
     others: Rows
@@ -58,7 +68,7 @@ def listen(mind: Mind, heard: Rows) -> None:
     """Note the newest that the messages of this tick say of each vehicle that matters."""
     for k in range(1, load(mind.known, 0) + 1):
         vehicle = load(mind.known, k)
-        forget_news(mind, vehicle)
+        put_fresh(mind.others, vehicle, Fresh(0.0))
         for source in range(load(mind.sources, 0)):
             message = message_from(heard, mind.size, source)
             if some(is_fresh(message)):
@@ -66,51 +76,28 @@ def listen(mind: Mind, heard: Rows) -> None:
 
 
 @compiled
-def forget_news(mind: Mind, vehicle: int) -> None:
-    """What was new in the last tick is known now."""
-    known = get_acquaintance(mind.others, vehicle)
-    put_acquaintance(
-        mind.others,
-        vehicle,
-        _updated(known, known.state, known.path_speed, known.time_of_validity, 0.0, known.phase),
-    )
-
-
-@compiled
 def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
     """Learn a vehicle's coordination state from a message, its own or a sighting, if that is newer."""
-    known = get_acquaintance(mind.others, vehicle)
     if sender == vehicle:
         head = head_of(message)
-        state, speed, valid = head.coordination_state, head.path_speed, head.time_of_validity
-        phase = head.phase
+        learnt = News(head.coordination_state, head.path_speed, head.time_of_validity, head.phase)
     else:
         seen = sighting_in(message, vehicle)
-        state, speed, valid = seen.coordination_state, seen.path_speed, seen.time_of_validity
-        phase = seen.phase
-    newer = is_fresh(message) & (valid > known.time_of_validity)
-    learnt = _updated(known, state, speed, valid, 1.0, phase)
-    put_acquaintance(mind.others, vehicle, where(newer, learnt, known))
+        learnt = News(seen.coordination_state, seen.path_speed, seen.time_of_validity, seen.phase)
+    learn(mind, vehicle, is_fresh(message) & (learnt.time_of_validity > time_of_news(mind, vehicle)), learnt)
 
 
 @compiled
-def _updated(
-    known: Acquaintance, state: float, path_speed: float, valid: float, is_new: float, phase: float
-) -> Acquaintance:
-    return Acquaintance(
-        state,
-        path_speed,
-        valid,
-        is_new,
-        known.predicted,
-        known.correction,
-        known.north,
-        known.east,
-        known.time_of_fix,
-        known.segment,
-        known.arc_length,
-        phase,
-    )
+def time_of_news(mind: Mind, vehicle: int) -> float:
+    """When what was last learnt of a vehicle was valid [s]."""
+    return get_news(mind.others, vehicle).time_of_validity
+
+
+@compiled
+def learn(mind: Mind, vehicle: int, is_new: bool, news: News) -> None:
+    """Note news of a vehicle, in the lanes where they are new."""
+    put_news(mind.others, vehicle, where(is_new, news, get_news(mind.others, vehicle)))
+    put_fresh(mind.others, vehicle, where(is_new, Fresh(1.0), get_fresh(mind.others, vehicle)))
 
 
 @compiled
@@ -150,25 +137,14 @@ def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, val
         valid: [s] when.
         error: where the one who saw is on its own path.
     """
-    known = get_acquaintance(mind.others, vehicle)
+    before, place_before = get_news(mind.others, vehicle), get_seen_place(mind.others, vehicle)
     seen_at = Place(where(is_new, north, 0.0), where(is_new, east, 0.0), path_of(mind, vehicle))
-    found, place = project(seen_at, PathPlace(known.segment, known.arc_length))
-    speed = where(known.state == known.state, known.path_speed, error.speed_profile)
-    seen = Acquaintance(
-        found.path_parameter,
-        speed,
-        valid,
-        1.0,
-        known.predicted,
-        known.correction,
-        north,
-        east,
-        valid,
-        place.segment,
-        place.arc_length,
-        known.phase,
-    )
-    put_acquaintance(mind.others, vehicle, where(is_new, seen, known))
+    found, place = project(seen_at, place_before)
+    speed = where(before.state == before.state, before.path_speed, error.speed_profile)
+    learn(mind, vehicle, is_new, News(found.path_parameter, speed, valid, before.phase))
+    seen = LastSeen(north, east, valid)
+    put_last_seen(mind.others, vehicle, where(is_new, seen, get_last_seen(mind.others, vehicle)))
+    put_seen_place(mind.others, vehicle, where(is_new, place, place_before))
 
 
 @compiled
@@ -192,57 +168,29 @@ def expect_correction(mind: Mind, vehicle: int, own_before: float) -> None:
         vehicle: who is thought of.
         own_before: [m] own coordination state at the last tick.
     """
-    known = get_acquaintance(mind.others, vehicle)
-    apart = disagreement_of(mind, vehicle, known.predicted, own_before)
+    state = get_outlook(mind.others, vehicle).state
+    apart = disagreement_of(mind, vehicle, state, own_before)
     has_view = apart.disagreement == apart.disagreement
     in_agreement = Disagreement(own_before, own_before, 0.0 * own_before)
     correction = correct_speed(mind.book, vehicle, where(has_view, apart, in_agreement))
-    after = Acquaintance(
-        known.state,
-        known.path_speed,
-        known.time_of_validity,
-        known.is_new,
-        known.predicted,
-        correction,
-        known.north,
-        known.east,
-        known.time_of_fix,
-        known.segment,
-        known.arc_length,
-        known.phase,
-    )
-    put_acquaintance(mind.others, vehicle, after)
+    put_outlook(mind.others, vehicle, Outlook(state, correction))
 
 
 @compiled
 def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) -> None:
     """Predict where a vehicle is along the formation by now."""
-    known = get_acquaintance(mind.others, vehicle)
-    age = time - known.time_of_validity
-    nominal, correction = pace_of_neighbor(mind, known, error, time), known.correction
-    is_known = known.state == known.state
-    path_speed = known.path_speed + pace_gained(mind, known.time_of_validity, time)
+    news, outlook = get_news(mind.others, vehicle), get_outlook(mind.others, vehicle)
+    is_new, age = get_fresh(mind.others, vehicle).is_new, time - news.time_of_validity
+    nominal, expected = pace_of_neighbor(mind, outlook, error, time), outlook.correction
+    is_known = news.state == news.state
+    path_speed = news.path_speed + pace_gained(mind, news.time_of_validity, time)
     if load(mind.features, HAS_PHASES) > 0:
-        waits = is_waiting(known.phase)
-        nominal, correction = where(waits, 0.0, nominal), where(waits, 0.0, correction)
-        is_known = is_known & takes_part(known.phase)
-    heard_last = NeighborReport(known.is_new, known.state, path_speed, age, nominal, correction)
+        waits = is_waiting(news.phase)
+        nominal, expected = where(waits, 0.0, nominal), where(waits, 0.0, expected)
+        is_known = is_known & takes_part(news.phase)
+    heard_last = NeighborReport(is_new, news.state, path_speed, age, nominal, expected)
     predicted = predict(mind.book, vehicle, heard_last)
-    after = Acquaintance(
-        known.state,
-        known.path_speed,
-        known.time_of_validity,
-        known.is_new,
-        where(is_known, predicted, NOTHING),
-        known.correction,
-        known.north,
-        known.east,
-        known.time_of_fix,
-        known.segment,
-        known.arc_length,
-        known.phase,
-    )
-    put_acquaintance(mind.others, vehicle, after)
+    put_outlook(mind.others, vehicle, Outlook(where(is_known, predicted, NOTHING), outlook.correction))
 
 
 @compiled
@@ -262,7 +210,7 @@ def disagreement_of(mind: Mind, vehicle: int, state: float, own_state: float) ->
         if other == mind.me:
             total, count = total + own_state, count + 1.0
         else:
-            predicted = get_acquaintance(mind.others, other).predicted
+            predicted = get_outlook(mind.others, other).state
             is_known = predicted == predicted
             total, count = total + where(is_known, predicted, 0.0), count + where(is_known, 1.0, 0.0)
     mean = where(count > 0.5, total / where(count > 0.5, count, 1.0), state)

@@ -8,8 +8,8 @@ from cardume.onboard.mind import (
     PACE_OVER,
     PACE_POINTS,
     VARIES_ALONG,
-    Acquaintance,
     Mind,
+    Outlook,
     pace_points,
     path_of,
 )
@@ -67,12 +67,12 @@ def pace_gained(mind: Mind, since: float, time: float) -> float:
 
 
 @compiled
-def pace_of_neighbor(mind: Mind, known: Acquaintance, error: PathError, time: float) -> float:
+def pace_of_neighbor(mind: Mind, outlook: Outlook, error: PathError, time: float) -> float:
     """v_L [m/s] that another vehicle went by since the last tick: of when that was, and of where it was.
 
     Args:
         mind: whose view it is.
-        known: what it knows of the other, predicted for the last tick.
+        outlook: what the other was thought to do, predicted for the last tick.
         error: with its own v_L.
         time: [s] since the start of the mission.
     """
@@ -82,7 +82,7 @@ def pace_of_neighbor(mind: Mind, known: Acquaintance, error: PathError, time: fl
         speed = interpolate(pace_points(mind), load(mind.features, PACE_POINTS), before)
     if load(mind.features, VARIES_ALONG) > 0:
         path = path_of(mind, mind.me)
-        state = where(known.predicted == known.predicted, known.predicted, error.path_parameter)
+        state = where(outlook.state == outlook.state, outlook.state, error.path_parameter)
         if load(mind.features, PACE_OVER) == OVER_PATH:
             speed = interpolate(pace_points(mind), load(mind.features, PACE_POINTS), state)
         else:

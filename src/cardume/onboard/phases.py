@@ -17,8 +17,8 @@ from cardume.onboard.mind import (
     Orders,
     Progress,
     fence_corners,
-    get_acquaintance,
     get_journal,
+    get_news,
     get_orders,
     get_progress,
     get_setup,
@@ -132,7 +132,7 @@ def what_others_say(mind: Mind) -> tuple[float, bool]:
     listed, me = neighbors_of(mind, mind.me), get_progress(mind.own, 0).phase
     least, is_gone = ABORT + 0.0 * me, me != me
     for k in range(1, load(listed, 0) + 1):
-        known = get_acquaintance(mind.others, load(listed, k))
+        known = get_news(mind.others, load(listed, k))
         said = where(known.state == known.state, known.phase, DIVE)
         least = where(said < least, said, least)
         is_gone = is_gone | ((said > GO - HALF) & takes_part(said))

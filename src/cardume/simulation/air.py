@@ -10,7 +10,8 @@ from cardume.maths.random import Key, uniforms
 from cardume.onboard.mind import (
     FLAG,
     HEAD,
-    get_acquaintance,
+    get_last_seen,
+    get_news,
     get_seen,
     get_setup,
     head_of,
@@ -93,15 +94,15 @@ def speak(fleet: Fleet, sender: int, said: Said) -> None:
         put_head(at(message, 1), 0, where(sends, said.report, head_of(message)))
         tells = sends & (get_setup(fleet.minds, sender).shares_sightings > 0.5)
         for other in range(fleet.size):
-            known = get_acquaintance(said.others, other)
+            where_seen, news = get_last_seen(said.others, other), get_news(said.others, other)
             seen = Sighting(
-                known.north,
-                known.east,
-                known.time_of_fix,
-                known.state,
-                known.path_speed,
-                known.time_of_validity,
-                known.phase,
+                where_seen.north,
+                where_seen.east,
+                where_seen.time_of_fix,
+                news.state,
+                news.path_speed,
+                news.time_of_validity,
+                news.phase,
             )
             put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
         note_sent(fleet, sender, sends)

@@ -108,7 +108,7 @@ class Fleet(NamedTuple):
     memory_width: int
     vehicles: Rows  # (vehicle, the records of VEHICLE)
     minds: Rows  # (vehicle, the records of OWN)
-    others: Rows  # (vehicle, vehicle, Acquaintance)
+    others: Rows  # (vehicle, vehicle, the records of OTHERS)
     usbl: Rows  # (vehicle, vehicle, 4) readings of this tick
     timings: Rows  # (vehicle, sensor, Timing)
     keys: Rows  # (vehicle, stream, Key), then the fleet's own

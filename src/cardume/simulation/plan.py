@@ -137,6 +137,11 @@ class Plan:
         return round(self.duration / self.tick)
 
     @property
+    def substeps(self) -> int:
+        """Plant steps in a tick."""
+        return max(1, round(self.tick / self.plant_step))
+
+    @property
     def order(self) -> list[int]:
         """The vehicles sorted by name: the order inside the engine, so that sums do not depend on the file's."""
         return sorted(range(len(self.vehicles)), key=lambda k: self.vehicles[k].name)

@@ -7,10 +7,10 @@ from cardume.maths import atan2, hypot, to_ned
 from cardume.onboard.mind import (
     HAS_PHASES,
     OTHERS_WIDTH,
-    get_acquaintance,
     get_along,
     get_correction,
     get_current,
+    get_outlook,
     get_progress,
     get_setup,
     get_whereabouts,
@@ -160,7 +160,7 @@ def write_predictions(fleet: Fleet, row: int, vehicle: int) -> None:
     """Log where a vehicle takes the others to be along the formation."""
     others = at(fleet.others, vehicle * fleet.size * OTHERS_WIDTH)
     for other in range(fleet.size):
-        store(fleet.predictions, row * fleet.size + other, get_acquaintance(others, other).predicted)
+        store(fleet.predictions, row * fleet.size + other, get_outlook(others, other).state)
 
 
 @compiled

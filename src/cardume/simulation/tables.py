@@ -12,8 +12,11 @@ from cardume.maths.random import random_key
 from cardume.onboard.mind import (
     OTHERS,
     OWN,
-    Acquaintance,
+    Fresh,
     Journal,
+    LastSeen,
+    News,
+    Outlook,
     Progress,
     Sounding,
     Speech,
@@ -47,6 +50,7 @@ from cardume.simulation.tick import TROUBLE_WIDTH
 
 MOST_SLOTS = 64  # messages of one sender under way at once
 USBL_COLUMNS = 4
+IN_PLANT_STEPS = ("autopilot", "model")  # called once a plant step, the others once a tick
 # Families that keep one memory for each vehicle of the fleet.
 PER_OTHER = frozenset({"coordination", "neighbors", "usbl", "acoustics"})
 
@@ -63,7 +67,7 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
     """
     vehicles = [plan.vehicles[k] for k in plan.order]
     size = len(vehicles)
-    gains, memory = _gains(vehicles), _memories(vehicles)
+    gains, memory = _gains(plan, vehicles), _memories(vehicles)
     graph, list_width, widest = _graph(plan, vehicles)
     slots, past_size = _slots(vehicles), _past_size(vehicles, plan.tick)
     paths, path_starts = _paths(vehicles)
@@ -74,7 +78,7 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
     return Tables(
         Whole(
             size,
-            max(1, round(plan.tick / plan.plant_step)),
+            plan.substeps,
             gains.shape[1],
             memory.shape[1],
             past_size,
@@ -92,7 +96,7 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
         memory.ravel(),
         np.concatenate([_vehicle_row(v) for v in vehicles]),
         np.concatenate([_mind_row(v) for v in vehicles]),
-        np.tile(np.concatenate([_acquaintance(v) for v in vehicles]), size),
+        np.tile(np.concatenate([_known_of(v) for v in vehicles]), size),
         np.full(size * size * USBL_COLUMNS, np.nan),
         np.concatenate([_timing_row(v, plan.tick) for v in vehicles]),
         np.concatenate([*(_key_row(v, plan.seed) for v in vehicles), random_key(plan.seed, "current")]),
@@ -198,9 +202,9 @@ def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(numbers), np.array(features, np.int64).ravel()
 
 
-def _acquaintance(vehicle: VehiclePlan) -> np.ndarray:
+def _known_of(vehicle: VehiclePlan) -> np.ndarray:
     """All that the others know of a vehicle before the mission: where on its path it starts."""
-    return _row(OTHERS, Acquaintance(segment=vehicle.place.segment, arc_length=vehicle.place.arc_length))
+    return _row(OTHERS, News(), Fresh(), Outlook(), LastSeen(), vehicle.place)
 
 
 def _estimate(vehicle: VehiclePlan) -> tuple[float, float]:
@@ -240,17 +244,15 @@ def _handles(vehicles: Sequence[VehiclePlan], size: int, lanes: bool) -> np.ndar
                 law = vehicle.laws[family].law
                 width = law.initial_memory().size
                 row[place] = law.handle(lanes), gain, memory, width
-                gain += len(law.parameters)
+                gain += law.gains_width
                 memory += width * (size if family in PER_OTHER else 1)
     return table.ravel()
 
 
-def _gains(vehicles: Sequence[VehiclePlan]) -> np.ndarray:
-    rows = [
-        np.concatenate([v.laws[f].law.gains(**v.laws[f].parameters) for f in FAMILIES if f in v.laws] or [np.zeros(0)])
-        for v in vehicles
-    ]
-    return _stacked(rows)
+def _gains(plan: Plan, vehicles: Sequence[VehiclePlan]) -> np.ndarray:
+    steps = dict.fromkeys(FAMILIES, plan.tick) | dict.fromkeys(IN_PLANT_STEPS, plan.tick / plan.substeps)
+    rows = [[v.laws[f].law.gains(steps[f], **v.laws[f].parameters) for f in FAMILIES if f in v.laws] for v in vehicles]
+    return _stacked([np.concatenate(row or [np.zeros(0)]) for row in rows])
 
 
 def _memories(vehicles: Sequence[VehiclePlan]) -> np.ndarray:

@@ -45,14 +45,18 @@ def variant_of(model: Law, **defaults: float) -> Callable[[Callable[[], None]], 
 
     def make(described: Callable[[], None]) -> Law:
         old = model.function
-        values = tuple(defaults.get(p.name, p.default) for p in model.parameters)
-        new = FunctionType(old.__code__, old.__globals__, described.__name__, values, old.__closure__)
+        new = FunctionType(old.__code__, old.__globals__, described.__name__, old.__defaults__, old.__closure__)
         new.__annotations__ = old.__annotations__
         new.__module__, new.__qualname__ = described.__module__, described.__qualname__
         head, _, source = (described.__doc__ or "").partition("    Source:")
-        arguments = (old.__doc__ or "").partition("    Args:")[2].partition("    Source:")[0]
-        new.__doc__ = f"{head}    Args:{arguments}    Source:{source}"
+        new.__doc__ = f"{head}    Args:{_arguments_in(model.doc_of_parameters)}    Source:{source}"
         law: Law = vehicle_model(new)
+        law.parameters = tuple(p._replace(default=defaults.get(p.name, p.default)) for p in law.parameters)
         return law
 
     return make
+
+
+def _arguments_in(doc: str) -> str:
+    """What a docstring says of arguments and results."""
+    return doc.partition("    Args:")[2].partition("    Source:")[0].rstrip() + "\n\n"

@@ -2,12 +2,13 @@
 
 from typing import Annotated, NamedTuple
 
-from cardume.compiler import compiled, where
+from cardume.compiler import compiled, some, where
 from cardume.laws import (
     Bounds,
     Kilograms,
     Meters,
     NotNegative,
+    Once,
     PerSecond,
     Positive,
     RadiansPerSecond,
@@ -21,10 +22,13 @@ from cardume.vehicles.base import vehicle_model
 from cardume.vehicles.hull import Hull, Pose, Push, Velocity, drag, hull_step
 from cardume.vehicles.thrusters import (
     ShaftSpeeds,
+    ThrusterPlant,
     Thrusters,
     allocate,
+    shaft_speed_for,
     started_thrusters,
     thruster_force,
+    thruster_plant,
     turned_shafts,
 )
 
@@ -62,22 +66,40 @@ def forces_of(shafts: ShaftSpeeds, coefficient: float) -> Forces:
     )
 
 
+class PerForce(NamedTuple):
+    """What a force of a thruster does to the hull."""
+
+    surge: float  # [1/kg] 1 / m_u
+    heave: float  # [1/kg] 1 / m_w
+    yaw: float  # [1/(kg m)] l / I, l the arm of each horizontal thruster
+
+
+class Medusa(NamedTuple):
+    """What does not change about a MEDUSA during a mission."""
+
+    hull: Hull
+    per_force: PerForce
+    thrusters: ThrusterPlant
+    arm: float  # [m] l
+    surge_drag: float  # [N s/m] d_u
+    surge_drag_quadratic: float  # [N s^2/m^2] D_u
+
+
 @compiled
-def push_of(forces: Forces, masses: tuple[float, float, float]) -> Push:
+def push_of(forces: Forces, per_force: PerForce) -> Push:
     """(F_port + F_starboard) / m_u,   F_down / m_w,   l (F_port - F_starboard) / I.
 
     Args:
         forces: of the thrusters.
-        masses: [1/kg], [1/kg], [1/(kg m)] 1 / m_u, 1 / m_w and l / I, l the arm of each horizontal thruster.
+        per_force: what a force does.
 
     Returns:
         The push on the hull.
     """
-    per_surge, per_heave, per_yaw = masses
     return Push(
-        (forces.port + forces.starboard) * per_surge,
-        forces.down * per_heave,
-        (forces.port - forces.starboard) * per_yaw,
+        (forces.port + forces.starboard) * per_force.surge,
+        forces.down * per_force.heave,
+        (forces.port - forces.starboard) * per_force.yaw,
     )
 
 
@@ -99,12 +121,7 @@ def useful_power(forces: Forces, velocity: Velocity, arm: float) -> float:
     return abs(port) + abs(starboard) + abs(forces.down * velocity.heave)
 
 
-@vehicle_model
-def medusa(
-    vessel: VesselState,
-    command: Command,
-    water: Water,
-    memory: Thrusters,
+def medusa_plant(
     dt: Seconds,
     mass: Positive[Kilograms] = farol.MASS,
     yaw_inertia: Positive[Inertia] = farol.YAW_INERTIA,
@@ -126,21 +143,10 @@ def medusa(
     motor_pole: Positive[PerSecond] = farol.MOTOR_POLE,
     motor_delay: Annotated[float, Unit("s"), Bounds(0.0, 3.0)] = farol.MOTOR_DELAY,
     thruster_arm: Positive[Meters] = farol.THRUSTER_ARM,
-) -> tuple[VesselState, Thrusters]:
-    """One plant step of a MEDUSA: thrusters with delay, lag, dead zone and saturation; a hull in 4 DOF.
-
-    Thrusters: n' = p (n_c(t - delay) - n),  F = c n |n|,  see `thrusters`. Hull: see `hull_step`.
-
-    The hull is neutrally buoyant. Farol computes the displaced volume from a sphere whose radius is
-    cbrt(m / ((3/4) pi rho)) instead of cbrt(3 m / (4 pi rho)) (AUV.cpp); that is 16/9 of the volume, 242 N of
-    buoyancy against 72 N of vertical thrust, and its vehicle could not dive. The surface holds: depth
-    never goes below zero. A vehicle that starts with a speed starts with the thrusters that hold it.
+) -> Medusa:
+    """What does not change about a MEDUSA during a mission, from the parameters that a mission may set.
 
     Args:
-        vessel: state before the step; velocities are through the water.
-        command: thrust [N], yaw moment [N m] and heave force [N] wanted.
-        water: current [m/s], held over the step.
-        memory: the thrusters.
         dt: [s] plant step, at least motor_delay / 63.
         mass: [kg] m.
         yaw_inertia: [kg m^2] I_zz.
@@ -162,14 +168,6 @@ def medusa(
         motor_pole: [1/s] p.
         motor_delay: [s] of every command.
         thruster_arm: [m] of each horizontal thruster from the centre line.
-
-    Returns:
-        The state after the step, and the thrusters. shaft_speed is the speed [rad/s] at which both
-        horizontal thrusters alike would push as much, so that (37) reads the thrust rightly also while
-        they differ to turn: n |n| = (n_port |n_port| + n_starboard |n_starboard|) / 2.
-
-    Source: dsor-isr/farol, `AUV.cpp` (applyThrustersModel, updateDynamics) and the sim.yaml of its MEDUSA
-    vehicles, whose numbers stand in `medusa_data`.
     """
     surge_mass, sway_mass = mass + surge_added_mass, mass + sway_added_mass
     per_surge, per_sway = 1.0 / surge_mass, 1.0 / sway_mass
@@ -187,21 +185,65 @@ def medusa(
         surge_mass * per_sway,
         (surge_mass - sway_mass) * per_yaw,
     )
-    holding = 0.5 * drag(vessel.surge, surge_drag, surge_drag_quadratic)
-    before = started_thrusters(memory, holding, thrust_coefficient, dt, motor_pole, motor_delay)
-    slowest = dead_zone * max_shaft_speed
-    commanded = allocate(command, thruster_arm, thrust_coefficient, max_shaft_speed, slowest)
-    middle, after = turned_shafts(before, commanded)
-    forces = forces_of(ShaftSpeeds(after.port, after.starboard, after.vertical), thrust_coefficient)
-    masses = per_surge, per_heave, thruster_arm * per_yaw
-    pose, velocity = hull_step(
+    return Medusa(
         hull,
+        PerForce(per_surge, per_heave, thruster_arm * per_yaw),
+        thruster_plant(dt, thrust_coefficient, max_shaft_speed, dead_zone, motor_pole, motor_delay, thruster_arm),
+        thruster_arm,
+        surge_drag,
+        surge_drag_quadratic,
+    )
+
+
+@vehicle_model
+def medusa(
+    vessel: VesselState,
+    command: Command,
+    water: Water,
+    memory: Thrusters,
+    dt: Seconds,
+    plant: Annotated[Medusa, Once(medusa_plant)],
+) -> tuple[VesselState, Thrusters]:
+    """One plant step of a MEDUSA: thrusters with delay, lag, dead zone and saturation; a hull in 4 DOF.
+
+    Thrusters: n' = p (n_c(t - delay) - n),  F = c n |n|,  see `thrusters`. Hull: see `hull_step`.
+
+    The hull is neutrally buoyant. Farol computes the displaced volume from a sphere whose radius is
+    cbrt(m / ((3/4) pi rho)) instead of cbrt(3 m / (4 pi rho)) (AUV.cpp); that is 16/9 of the volume, 242 N of
+    buoyancy against 72 N of vertical thrust, and its vehicle could not dive. The surface holds: depth
+    never goes below zero. A vehicle that starts with a speed starts with the thrusters that hold it.
+
+    Args:
+        vessel: state before the step; velocities are through the water.
+        command: thrust [N], yaw moment [N m] and heave force [N] wanted.
+        water: current [m/s], held over the step.
+        memory: the thrusters.
+        dt: [s] plant step, at least motor_delay / 63.
+        plant: the rest, of the parameters that `medusa_plant` names.
+
+    Returns:
+        The state after the step, and the thrusters. shaft_speed is the speed [rad/s] at which both
+        horizontal thrusters alike would push as much, so that (37) reads the thrust rightly also while
+        they differ to turn: n |n| = (n_port |n_port| + n_starboard |n_starboard|) / 2.
+
+    Source: dsor-isr/farol, `AUV.cpp` (applyThrustersModel, updateDynamics) and the sim.yaml of its MEDUSA
+    vehicles, whose numbers stand in `medusa_data`.
+    """
+    before = memory
+    if some(memory.started < 0.5):
+        holding = 0.5 * drag(vessel.surge, plant.surge_drag, plant.surge_drag_quadratic)
+        before = started_thrusters(memory, shaft_speed_for(holding, plant.thrusters.per_coefficient, 0.0))
+    middle, after = turned_shafts(before, allocate(command, plant.thrusters), plant.thrusters)
+    coefficient = plant.thrusters.coefficient
+    forces = forces_of(ShaftSpeeds(after.port, after.starboard, after.vertical), coefficient)
+    pose, velocity = hull_step(
+        plant.hull,
         Pose(vessel.north, vessel.east, vessel.depth, vessel.heading),
         Velocity(vessel.surge, vessel.sway, vessel.heave, vessel.yaw_rate),
         water,
-        push_of(forces_of(ShaftSpeeds(before.port, before.starboard, before.vertical), thrust_coefficient), masses),
-        push_of(forces_of(middle, thrust_coefficient), masses),
-        push_of(forces, masses),
+        push_of(forces_of(ShaftSpeeds(before.port, before.starboard, before.vertical), coefficient), plant.per_force),
+        push_of(forces_of(middle, coefficient), plant.per_force),
+        push_of(forces, plant.per_force),
         dt,
     )
     surfaced = pose.depth <= 0.0
@@ -216,7 +258,7 @@ def medusa(
         velocity.yaw_rate,
         signed_root(0.5 * (signed_square(after.port) + signed_square(after.starboard))),
         forces.port + forces.starboard,
-        thruster_arm * (forces.port - forces.starboard),
-        useful_power(forces, velocity, thruster_arm),
+        plant.arm * (forces.port - forces.starboard),
+        useful_power(forces, velocity, plant.arm),
     )
     return vessel, after

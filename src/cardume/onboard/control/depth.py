@@ -17,11 +17,11 @@ class DepthGains(NamedTuple):
     gain: float  # [1/s]
     heave_max: float  # [m/s]
     heave_gain: float  # [N s/m]
-    integral_gain: float  # [N/(m s)]
+    integral_gain: float  # [N/m] per plant step
     bandwidth: float  # [1/s] of the heave observer
     force_max: float  # [N]
-    lag: float  # [s] of the thrusters
-    mass: float  # [kg] with added mass
+    delivered: float  # [-] share of a change of force that the thrusters deliver within a plant step
+    per_mass: float  # [1/kg] of one with added mass
     drag: float  # [N s/m]
     drag_quadratic: float  # [N s^2/m^2]
 
@@ -63,15 +63,15 @@ def keep_depth(feedback: Feedback, state: DepthState, gains: DepthGains, dt: flo
     )
     force = where(knows, clip(wanted, -gains.force_max, gains.force_max), 0.0)
     works = knows & (abs(error) > NEAR) & (abs(error) < AWAY)
-    integral = state.integral + where(works, dt * gains.integral_gain * error, 0.0)
+    integral = state.integral + where(works, gains.integral_gain * error, 0.0)
     limit = INTEGRAL_SHARE * gains.force_max
 
     miss = where(knows, feedback.depth - state.depth, 0.0)
     b = gains.bandwidth
-    acceleration = (state.force - drag(state.heave, gains.drag, gains.drag_quadratic)) / gains.mass
+    acceleration = (state.force - drag(state.heave, gains.drag, gains.drag_quadratic)) * gains.per_mass
     return force, DepthState(
         state.depth + dt * (state.heave + 2.0 * b * miss),
         state.heave + dt * (acceleration + b * b * miss),
-        state.force + (force - state.force) * dt / (gains.lag + dt),
+        state.force + (force - state.force) * gains.delivered,
         clip(integral, -limit, limit),
     )

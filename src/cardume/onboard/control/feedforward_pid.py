@@ -9,6 +9,7 @@ from cardume.laws import (
     NewtonMeters,
     Newtons,
     NotNegative,
+    Once,
     PerSecond,
     Positive,
     Probability,
@@ -51,10 +52,15 @@ class Helm(NamedTuple):
     depth_integral: float = 0.0  # [N]
 
 
-@autopilot_law
-def feedforward_pid(
-    feedback: Feedback,
-    memory: Helm,
+class Pilot(NamedTuple):
+    """What does not change about the autopilot during a mission."""
+
+    heading: HeadingGains
+    speed: SpeedGains
+    depth: DepthGains
+
+
+def pilot_of(
     dt: Seconds,
     heading_gain: NotNegative[Annotated[float, Unit("N m/rad")]] = 5.0,
     yaw_rate_gain: NotNegative[YawRateGain] = 4.0,
@@ -85,30 +91,10 @@ def feedforward_pid(
     heave_drag_quadratic: NotNegative[QuadraticDrag] = farol.HEAVE_DRAG_QUADRATIC,
     yaw_drag: NotNegative[YawRateGain] = farol.YAW_DRAG,
     yaw_drag_quadratic: NotNegative[Annotated[float, Unit("N m s^2")]] = farol.YAW_DRAG_QUADRATIC,
-) -> tuple[Command, Helm]:
-    """Yaw moment, thrust and heave force of a MEDUSA, by three loops that know its hull.
-
-    N = kp(u) (psi_ref - psi) + kd(u) (z - r) + N_turn(z, u) + share (m_v - m_u) u v + s   (`steer_heading`)
-    X = m_u u_m' + (d + D |u_m|) u_m + s,   u_m' = sat(b (u_ref - u_m))                    (`drive_speed`)
-    Z = kw (w_d - w) + (d + D |w_d|) w_d + s,   w_d = sat(k (z_ref - z))                   (`keep_depth`)
-
-    Heading. A command takes 0.345 s and a lag of 0.139 s to act, and above 0.68 m/s the hull does not keep
-    its course by itself: the Munk moment (m_u - m_v) u v, with the sway of a turn v = -m_u u r / Y, beats the
-    yaw drag where (m_v - m_u) m_u u^2 / Y > N_r. With these gains heading and yaw rate alone
-    stabilize it to 1.1 m/s; with an estimate of sway, which cancels about half that moment, to 1.2 m/s and more. Linear
-    analysis, 0.42 s of pure delay and the motor's pole in the loop: the slowest pole is at -0.84, -1.03, -0.78,
-    -0.61, -0.52 1/s and the largest sensitivity 1.7, 1.8, 1.9, 2.2, 2.8 at 0.15, 0.5, 0.7, 1.0, 1.2 m/s. On an
-    arc the lag is made up by z, how fast the reference turns; 6 degrees of noise, a new draw every second,
-    move the moment by 0.5 N m.
-
-    Measured with `medusa`, plant step 0.05 s, tick 0.1 s, surge from `thruster_calibration`: a heading step of
-    90 degrees overshoots by < 2 % and is within 5 % after 4.5 s at 0.15, 5.9 s at 0.5, 7.1 s at 0.7, 10.2 s at
-    1.2 m/s; lag on an arc of R = 12 m at 0.5 m/s 0.02 s (0.05 degrees), at its beginning 4 degrees for some
-    seconds; speed 0 to 0.5 m/s in 4.3 s without overshoot; depth 0 to 10 m in 25 s, 0.06 m too far.
+) -> Pilot:
+    """What does not change about the autopilot during a mission, from the parameters that a mission may set.
 
     Args:
-        feedback: measured heading, yaw rate, surge and depth, and what is wanted. NaN where nothing is known.
-        memory: of the three loops; they start at the measured speed and depth.
         dt: [s] plant step.
         heading_gain: [N m/rad] kp at rest.
         yaw_rate_gain: [N m s] kd at rest.
@@ -139,29 +125,14 @@ def feedforward_pid(
         heave_drag_quadratic: [N s^2/m^2] D in heave.
         yaw_drag: [N m s] N_r.
         yaw_drag_quadratic: [N m s^2] D in yaw.
-
-    Returns:
-        Thrust [N], yaw moment [N m], heave force [N], each within its limits, and the next memory.
-
-    Source: own design for the inner loops that the paper assumes; the numbers of the hull from farol, see
-    `medusa_data`. Farol's and the real vehicles' own gains are not used: their units are not stated.
     """
-    new = memory.started < 0.5
-    surge = where(feedback.surge == feedback.surge, feedback.surge, memory.speed_model)
-    moment, h = steer_heading(
-        feedback,
-        surge,
-        HeadingState(
-            where(new, feedback.reference_heading, memory.turn_heading),
-            memory.turn_rate,
-            memory.sway,
-            memory.heading_integral,
-        ),
+    return Pilot(
         HeadingGains(
             heading_gain,
             yaw_rate_gain,
-            heading_integral_gain,
-            sway_share,
+            heading_integral_gain * dt,
+            sway_share * (sway_mass - surge_mass),
+            (1.0 - sway_share) * (sway_mass - surge_mass) * (-surge_mass / sway_drag),
             turn_bandwidth,
             heading_jump,
             yaw_moment_max,
@@ -172,40 +143,79 @@ def feedforward_pid(
             yaw_drag,
             yaw_drag_quadratic,
         ),
-        dt,
-    )
-    thrust, s = drive_speed(
-        feedback,
-        SpeedState(where(new, surge, memory.speed_model), memory.speed_integral),
         SpeedGains(
             speed_bandwidth,
             acceleration_max,
-            speed_integral_gain,
+            speed_integral_gain * dt,
             thrust_max,
             surge_mass,
             surge_drag,
             surge_drag_quadratic,
         ),
-        dt,
-    )
-    depth = where(feedback.depth == feedback.depth, feedback.depth, 0.0)
-    force, d = keep_depth(
-        feedback,
-        DepthState(where(new, depth, memory.depth), memory.heave, memory.heave_force, memory.depth_integral),
         DepthGains(
             depth_gain,
             heave_max,
             heave_gain,
-            depth_integral_gain,
+            depth_integral_gain * dt,
             heave_bandwidth,
             heave_force_max,
-            thruster_lag,
-            heave_mass,
+            dt / (thruster_lag + dt),
+            1.0 / heave_mass,
             heave_drag,
             heave_drag_quadratic,
         ),
-        dt,
     )
+
+
+@autopilot_law
+def feedforward_pid(
+    feedback: Feedback,
+    memory: Helm,
+    dt: Seconds,
+    pilot: Annotated[Pilot, Once(pilot_of)],
+) -> tuple[Command, Helm]:
+    """Yaw moment, thrust and heave force of a MEDUSA, by three loops that know its hull.
+
+    N = kp(u) (psi_ref - psi) + kd(u) (z - r) + N_turn(z, u) + share (m_v - m_u) u v + s   (`steer_heading`)
+    X = m_u u_m' + (d + D |u_m|) u_m + s,   u_m' = sat(b (u_ref - u_m))                    (`drive_speed`)
+    Z = kw (w_d - w) + (d + D |w_d|) w_d + s,   w_d = sat(k (z_ref - z))                   (`keep_depth`)
+
+    Heading. A command takes 0.345 s and a lag of 0.139 s to act, and above 0.68 m/s the hull does not keep
+    its course by itself: the Munk moment (m_u - m_v) u v, with the sway of a turn v = -m_u u r / Y, beats the
+    yaw drag where (m_v - m_u) m_u u^2 / Y > N_r. With these gains heading and yaw rate alone
+    stabilize it to 1.1 m/s; with an estimate of sway, which cancels about half that moment, to 1.2 m/s and more. Linear
+    analysis, 0.42 s of pure delay and the motor's pole in the loop: the slowest pole is at -0.84, -1.03, -0.78,
+    -0.61, -0.52 1/s and the largest sensitivity 1.7, 1.8, 1.9, 2.2, 2.8 at 0.15, 0.5, 0.7, 1.0, 1.2 m/s. On an
+    arc the lag is made up by z, how fast the reference turns; 6 degrees of noise, a new draw every second,
+    move the moment by 0.5 N m.
+
+    Measured with `medusa`, plant step 0.05 s, tick 0.1 s, surge from `thruster_calibration`: a heading step of
+    90 degrees overshoots by < 2 % and is within 5 % after 4.5 s at 0.15, 5.9 s at 0.5, 7.1 s at 0.7, 10.2 s at
+    1.2 m/s; lag on an arc of R = 12 m at 0.5 m/s 0.02 s (0.05 degrees), at its beginning 4 degrees for some
+    seconds; speed 0 to 0.5 m/s in 4.3 s without overshoot; depth 0 to 10 m in 25 s, 0.06 m too far.
+
+    Args:
+        feedback: measured heading, yaw rate, surge and depth, and what is wanted. NaN where nothing is known.
+        memory: of the three loops; they start at the measured speed and depth.
+        dt: [s] plant step.
+        pilot: the rest, of the parameters that `pilot_of` names.
+
+    Returns:
+        Thrust [N], yaw moment [N m], heave force [N], each within its limits, and the next memory.
+
+    Source: own design for the inner loops that the paper assumes; the numbers of the hull from farol, see
+    `medusa_data`. Farol's and the real vehicles' own gains are not used: their units are not stated.
+    """
+    new = memory.started < 0.5
+    surge = where(feedback.surge == feedback.surge, feedback.surge, memory.speed_model)
+    turn_heading = where(new, feedback.reference_heading, memory.turn_heading)
+    turning = HeadingState(turn_heading, memory.turn_rate, memory.sway, memory.heading_integral)
+    moment, h = steer_heading(feedback, surge, turning, pilot.heading, dt)
+    driving = SpeedState(where(new, surge, memory.speed_model), memory.speed_integral)
+    thrust, s = drive_speed(feedback, driving, pilot.speed, dt)
+    depth = where(new, where(feedback.depth == feedback.depth, feedback.depth, 0.0), memory.depth)
+    diving = DepthState(depth, memory.heave, memory.heave_force, memory.depth_integral)
+    force, d = keep_depth(feedback, diving, pilot.depth, dt)
     after = Helm(
         1.0,
         h.turn_heading,

@@ -21,8 +21,9 @@ class HeadingGains(NamedTuple):
 
     gain: float  # [N m/rad] at rest
     rate_gain: float  # [N m s] at rest
-    integral_gain: float  # [N m/(rad s)]
-    sway_share: float  # [-] of the Munk moment that is cancelled
+    integral_gain: float  # [N m/rad] per plant step
+    munk: float  # [kg] share of the Munk moment that the estimated sway cancels, times m_v - m_u
+    turning: float  # [kg s] what is left of it in a steady turn, per u^2 z: -(1 - share) (m_v - m_u) m_u / Y
     turn_bandwidth: float  # [1/s]
     jump: float  # [rad]
     moment_max: float  # [N m]
@@ -86,9 +87,7 @@ def turning_moment(rate: float, surge: float, gains: HeadingGains) -> float:
     Returns:
         The moment [N m].
     """
-    sway = -gains.surge_mass * surge * rate / gains.sway_drag
-    munk = (gains.sway_mass - gains.surge_mass) * surge * sway
-    return drag(rate, gains.yaw_drag, gains.yaw_drag_quadratic) + (1.0 - gains.sway_share) * munk
+    return drag(rate, gains.yaw_drag, gains.yaw_drag_quadratic) + gains.turning * (surge * surge * rate)
 
 
 @compiled
@@ -122,7 +121,7 @@ def steer_heading(
     error = where(knows & negate(turns), wrap_angle(feedback.reference_heading - feedback.heading), 0.0)
     yaw_rate = where(knows, feedback.yaw_rate, rate)
     surge_squared = surge * surge
-    munk = gains.sway_share * (gains.sway_mass - gains.surge_mass) * surge * state.sway
+    munk = gains.munk * surge * state.sway
     wanted = (
         gains.gain * error / (1.0 + SOFTENING * surge_squared)
         + gains.rate_gain * (1.0 + STIFFENING * surge_squared) * (rate - yaw_rate)
@@ -131,7 +130,7 @@ def steer_heading(
         + state.integral
     )
     small = where(abs(wanted) < gains.moment_max, clip(error, -SMALL_ERROR, SMALL_ERROR), 0.0)
-    integral = state.integral + dt * gains.integral_gain * small
+    integral = state.integral + gains.integral_gain * small
     sway = sway_step(
         state.sway,
         surge,

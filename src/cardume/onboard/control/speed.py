@@ -16,7 +16,7 @@ class SpeedGains(NamedTuple):
 
     bandwidth: float  # [1/s]
     acceleration_max: float  # [m/s^2]
-    integral_gain: float  # [N/m]
+    integral_gain: float  # [N s/m] per plant step
     thrust_max: float  # [N]
     mass: float  # [kg] with added mass
     drag: float  # [N s/m]
@@ -55,6 +55,6 @@ def drive_speed(feedback: Feedback, state: SpeedState, gains: SpeedGains, dt: fl
     error = feedback.reference_speed - feedback.surge
     share = 1.0 / (1.0 + UNSETTLED * (ahead * ahead))
     works = (thrust == wanted) & (error == error)
-    integral = state.integral + where(works, dt * gains.integral_gain * share * error, 0.0)
+    integral = state.integral + where(works, gains.integral_gain * share * error, 0.0)
     limit = INTEGRAL_SHARE * gains.thrust_max
     return thrust, SpeedState(state.model + dt * acceleration, clip(integral, -limit, limit))
