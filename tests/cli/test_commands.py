@@ -59,6 +59,11 @@ def test_every_command_and_option_is_explained(cardume: Cardume) -> None:
             assert not isinstance(option, click.Option) or option.help, (name, option.name)
 
 
+def test_the_list_of_commands_says_each_in_a_line(cardume: Cardume) -> None:
+    assert "..." not in cardume("--help").out
+    assert all(one.short_help for one in cli.commands.values())
+
+
 def test_everywhere_the_same_options(cardume: Cardume) -> None:
     for one in cli.commands.values():
         assert {"allow_code", "quiet", "as_json"} <= {option.name for option in one.params}
@@ -87,6 +92,7 @@ def test_version(cardume: Cardume) -> None:
         (["run", "a", "--seed", "-1"], "-1 is not in the range"),
         (["run", "a", "--seed", str(2**63)], "is not in the range"),
         (["run", "a", "--allow-code", "nowhere"], "does not exist"),
+        (["new", "a.txt"], "a.txt: a mission file ends in .yaml; write: cardume new a.yaml"),
         (["new", "a.yaml", "--kind", "flet"], "'flet' is not one of 'single', 'fleet'"),
         (["list", "guidanc"], "There is no family 'guidanc'. Did you mean 'guidance'?"),
     ],

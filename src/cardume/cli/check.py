@@ -24,7 +24,7 @@ DONE, BAD_INPUT = 0, 2
 COLORS = {"error": "red", "warning": "yellow", "note": "cyan"}
 
 
-@click.command()
+@click.command(short_help="Say what theory knows of a mission, without flying it.")
 @mission_argument
 @seed_option
 @set_option

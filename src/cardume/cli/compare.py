@@ -62,7 +62,7 @@ def _read_seeds(_ctx: click.Context, _parameter: click.Parameter, given: str | N
     return tuple(seeds)
 
 
-@click.command()
+@click.command(short_help="Compare laws, values or missions, chance allowed for.")
 @click.argument("missions", nargs=-1, required=True, metavar="MISSION...")
 @click.option(
     "--vary",

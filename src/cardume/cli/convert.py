@@ -57,7 +57,7 @@ class LatLon(click.ParamType):
         return geo(latitude, longitude)
 
 
-@click.command(epilog=FLYABLE_BY_ITSELF)
+@click.command(epilog=FLYABLE_BY_ITSELF, short_help="Turn a mission or path file into another format.")
 @click.argument("source", metavar="IN")
 @click.argument("target", metavar="OUT", type=click.Path(path_type=Path))
 @click.option("--from", "source_kind", metavar="FORMAT", help="What IN is, if its contents do not say.")

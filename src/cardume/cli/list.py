@@ -26,7 +26,7 @@ KEYS = {
 }
 
 
-@click.command("list")
+@click.command("list", short_help="List laws, missions, metrics, formats.")
 @click.argument("what", required=False, metavar="[FAMILY|missions|metrics|formats|MODULE:LAW]")
 @allow_code_option
 @quiet_option

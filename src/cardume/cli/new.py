@@ -13,9 +13,10 @@ from cardume.errors import InputError
 from cardume.units import printable
 
 KINDS = ("single", "fleet")
+MISSION_ENDINGS = (".yaml", ".yml")
 
 
-@click.command()
+@click.command(short_help="Write a commented mission to begin with.")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--kind", type=click.Choice(KINDS), default="fleet", show_default=True, help="One vehicle or three.")
 @allow_code_option
@@ -24,6 +25,9 @@ KINDS = ("single", "fleet")
 def new(file: Path, kind: str, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
     """Write a commented mission to FILE that flies as it is. An existing file is left alone."""
     del allow_code
+    if file.suffix.lower() not in MISSION_ENDINGS:
+        named = printable(str(file.with_suffix(".yaml")))
+        raise InputError(f"{printable(str(file))}: a mission file ends in .yaml; write: cardume new {named}")
     text = template(kind, mission_name(file))
     _write_new(file, text)
     if as_json:

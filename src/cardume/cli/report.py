@@ -19,7 +19,7 @@ INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0}
 NARROWEST, WIDEST = 2.0, 40.0  # [inch]
 
 
-@click.command()
+@click.command(short_help="Write the report of an earlier run, or figures of it.")
 @click.argument("run", type=click.Path(path_type=Path))
 @click.option(
     "--figure", "figures", multiple=True, metavar="NAME", help="A figure instead of the page; may be repeated; or all."

@@ -48,7 +48,7 @@ class Request(NamedTuple):
         return not (self.quiet or self.as_json)
 
 
-@click.command()
+@click.command(short_help="Fly a mission, and keep what comes out.")
 @mission_argument
 @click.option(
     "-o", "output", type=click.Path(path_type=Path), metavar="DIR", help="Where to; else runs/NAME/001, 002, ..."

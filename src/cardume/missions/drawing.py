@@ -85,7 +85,7 @@ def refuse_sweeps(mission: Mission) -> None:
     """
     sweeps = sweeps_of(mission)
     if sweeps:
-        advice = "a sweep makes this file a study: use 'cardume study', or give one value, as --set"
+        advice = "a sweep is several missions: 'cardume compare' flies them side by side; or give one value, as --set"
         raise MissionError(Problem(mission.where(key), f"{advice} {key}=...") for key in sweeps)
 
 

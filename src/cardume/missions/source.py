@@ -62,7 +62,10 @@ def read_text(path: Path) -> str:
         with open(path, "rb") as file:
             content = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise error(f"no such file{nearest_file(path)}") from None
+        advice = nearest_file(path)
+        if not advice and path.suffix.lower() in (".yaml", ".yml"):
+            advice = "; 'cardume new' writes one to begin with, 'cardume list missions' has built-in ones"
+        raise error(f"no such file{advice}") from None
     except (OSError, ValueError) as problem:
         reason = getattr(problem, "strerror", None) or str(problem)
         raise error(f"cannot be read: {reason}; check the path and its permissions") from None
