@@ -143,7 +143,7 @@ def test_a_sweep_is_refused_where_a_single_mission_is_needed() -> None:
             ("formation.speed", line_of(text, '"speed"')),
             ("guidance.lookahead", line_of(text, '"lookahead"')),
         ]
-        assert "cardume study" in str(caught.value)
+        assert "cardume compare" in str(caught.value)
     refuse_sweeps(parse(text, "formation.speed=0.3", "guidance.lookahead=2"))
 
 

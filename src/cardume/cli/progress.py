@@ -84,9 +84,10 @@ class Progress:
             if self._timer is None:
                 return
             text, count = TextColumn("{task.description}"), TextColumn("{task.completed:.0f} of {task.total:.0f}")
-            paced = TextColumn("{task.fields[pace]}")
-            console = Console(stderr=True)
-            bar = Progress(text, BarColumn(24), count, TimeElapsedColumn(), paced, console=console, transient=True)
+            columns = [text, BarColumn(24), count, TimeElapsedColumn()]
+            if self._stage in PACED:
+                columns.append(TextColumn("{task.fields[pace]}"))
+            bar = Progress(*columns, console=Console(stderr=True), transient=True)
             words = WORDS.get(self._stage, self._stage)
             bar.add_task(words, completed=self._done, total=self._total, pace=self._pace())
             bar.start()
