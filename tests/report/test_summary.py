@@ -84,6 +84,9 @@ def test_the_summary_holds_what_a_person_would_look_for() -> None:
             "vehicle": None,
             "worst": "port",
             "met": False,
+            "margin": None,
+            "first_violated": None,
+            "by": None,
         }
     ]
     assert found["fleet"]["cross_track_rms"] is None

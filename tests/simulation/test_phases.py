@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
 from cardume.missions.available import catalog
 from cardume.missions.flying import fly_mission
 from cardume.missions.loading import parse_mission
-from cardume.missions.summary import judge
+from cardume.missions.summary import judge, summarize, to_json
 from cardume.onboard.phases import ABORT, ASSEMBLED, DIVE, GO, HOLD, READY, SURFACE
+from cardume.report.words import meaning, verdict_lines
 from cardume.simulation.flight import Flight
 
 HEAD = """
@@ -163,3 +166,24 @@ def test_nobody_knows_that_another_is_ready_before_a_message_says_so() -> None:
     assert happened(fast, "hub", "knows") >= 5.0
     assert happened(fast, "near", "sets out") >= 10.0
     assert phases(fast, "near")[:3] == [READY, ASSEMBLED, GO]
+
+
+def test_the_summary_and_the_sentences_tell_it() -> None:
+    lines = SQUARE + "abort: {to: hold}\n"
+    mission = parse_mission(
+        HEAD + "vehicles: [{name: alone, start: {speed: 0.5 m/s}}]\n" + lines + "require: {depth_max: 3 m}\n", catalog()
+    )
+    flight = fly_mission(mission)
+    verdicts = judge(mission.require, flight.metrics)
+    summary = summarize(flight, verdicts, duration=60.0, version="1")
+    (event,) = [e for e in summary["events"] if "gives up" in e["what"]]
+    assert event == {"time": pytest.approx(16.1, abs=0.21), "vehicle": "alone", "what": "gives up: geofence"}
+    assert summary["requirements_met"] is False
+    of_fence = next(r for r in summary["requirements"] if r["metric"] == "geofence_margin_min")
+    assert of_fence["first_violated"] == pytest.approx(16.1, abs=0.21)
+    assert of_fence["margin"] < 0.0
+    assert json.loads(to_json(summary)) == summary
+    text = meaning(flight, mission, verdicts)
+    assert "alone gave up at 16" in text
+    assert "geofence" in text
+    assert any("first at 16" in line and not good for line, good in verdict_lines(verdicts))

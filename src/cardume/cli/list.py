@@ -20,9 +20,10 @@ KEYS = {
     "reference_point": "guidance.reference_point",
     "messaging": "messaging, as schedule",
     "acoustics": "acoustics, as channel",
+    "bathymetry": "bathymetry, as type",
     "current": "current, as type",
     "speed": "sensors.thruster_speed, as reader",
-    **{name: f"sensors.{name}" for name in ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed")},
+    **{name: f"sensors.{name}" for name in ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed", "altimeter")},
 }
 
 

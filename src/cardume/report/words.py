@@ -34,7 +34,13 @@ def meaning(flight: Flight, mission: Planned, verdicts: Sequence[Verdict]) -> st
         mission: as flown.
         verdicts: of its numbers.
     """
-    parts = (_ending(flight, mission), *_keeping(flight, mission), *_together(flight), *_verdict(flight, verdicts))
+    parts = (
+        _ending(flight, mission),
+        *_given_up(flight),
+        *_keeping(flight, mission),
+        *_together(flight),
+        *_verdict(flight, verdicts),
+    )
     return " ".join(part for part in parts if part)
 
 
@@ -67,7 +73,11 @@ def _got(verdict: Verdict) -> str:
         text = "got no value"
     else:
         text = f"got {verdict.got:.4g} {verdict.unit}".rstrip()
-    return f"{text} ({verdict.worst})" if verdict.worst and verdict.vehicle is None else text
+    text = f"{text} ({verdict.worst})" if verdict.worst and verdict.vehicle is None else text
+    if verdict.met or verdict.first_violated is None:
+        return text
+    by = f" by {verdict.by}" if verdict.by and verdict.vehicle is None else ""
+    return f"{text}, first at {verdict.first_violated:g} s{by}"
 
 
 def _ending(flight: Flight, mission: Planned) -> str:
@@ -78,6 +88,13 @@ def _ending(flight: Flight, mission: Planned) -> str:
         return f"Interrupted at {flight.flown:g} s of {whole}; all below is about the part that was flown."
     wall = f", in {_duration(flight.wall_seconds)} of computing" if math.isfinite(flight.wall_seconds) else ""
     return f"Flew {whole}{wall}."
+
+
+def _given_up(flight: Flight) -> Iterator[str]:
+    """Who gave up, and why."""
+    for event in flight.events:
+        if event.what.startswith("gives up"):
+            yield f"{event.vehicle} gave up at {event.time:g} s: {event.what.partition(': ')[2]}."
 
 
 def _duration(seconds: float) -> str:

@@ -15,7 +15,7 @@ from cardume.onboard.estimation.position.reset_compensated import REMEMBERED
 
 BIAS_SHOWN = 0.05  # [m]
 MOST_TRIED = 100
-KINDS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed")
+KINDS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed", "altimeter")
 
 
 def check_senses(scene: Scene) -> Iterator[Finding]:
