@@ -135,12 +135,14 @@ cross_track along_track path_course curvature coordination_state
 north_estimate east_estimate current_north_estimate current_east_estimate
 cross_track_estimate coordination_state_estimate
 course_desired heading_desired speed_desired speed_correction thrust yaw_moment shaft_speed_rpm
+altitude depth_desired phase
 """
 METRIC_NAMES = """
-cross_track_rms cross_track_p95 cross_track_max cross_track_rms_lines cross_track_rms_arcs settling_time
+cross_track_rms cross_track_p95 cross_track_max cross_track_iae cross_track_rms_lines cross_track_rms_arcs settling_time
 position_error_rms current_error_rms coordination_error_rms coordination_error_max
 formation_error_rms formation_error_p95 formation_error_rms_relative path_speed_mean separation_min
 messages_sent messages_delivered information_age_mean information_age_max energy yaw_effort swath_coverage
+depth_max altitude_min geofence_margin_min
 """
 
 

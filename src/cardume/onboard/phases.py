@@ -210,6 +210,7 @@ def note(mind: Mind, orders: Orders, before: Progress, phase: float, reason: flo
     """
     kept, was = get_journal(mind.own, 0), before.phase
     began = where(was < DIVE + HALF, time, kept.gather)
+    gives_up = takes_part(was) & (phase > ABORT - HALF)
     dive_late = (was < DIVE + HALF) & takes_part(phase) & (time - before.since > orders.dive_timeout)
     waited = is_waiting(was) & (phase > GO - HALF) & takes_part(phase)
     after = Journal(
@@ -220,10 +221,10 @@ def note(mind: Mind, orders: Orders, before: Progress, phase: float, reason: flo
         entered(kept.go, was, phase, GO, time),
         entered(kept.hold, was, phase, HOLD, time),
         entered(kept.surface, was, phase, SURFACE, time),
-        where(takes_part(phase), kept.abort, time),
+        where(gives_up, time, kept.abort),
         where(dive_late, 1.0, kept.dive_late),
         where(waited & (time - began > orders.gather_timeout), 1.0, kept.gather_late),
-        where(takes_part(phase), kept.reason, reason),
+        where(gives_up, reason, kept.reason),
     )
     put_journal(mind.own, 0, after)
 
