@@ -84,6 +84,7 @@ PATHS = {
     "north": Meaning("m", "north of the origin"),
     "east": Meaning("m", "east of the origin"),
 }
+ADDED = ("altitude", "depth_desired", "phase")  # since the first logs of this format
 WHOLE = {"sender": "i4", "receiver": "i4", "kind": "i1", "lost": "i1", "vehicle": "i4"}
 
 
@@ -256,7 +257,7 @@ def _read(file: Any) -> Log:
         seed=int(file.seed),
         vehicle_names=tuple(str(name) for name in file["vehicle"][:]),
         times=file["time"][:],
-        channels={name: file[name][:] for name in CHANNELS},
+        channels={name: _channel(file, name) for name in CHANNELS},
         neighbor_state_estimate=file["neighbor_state_estimate"][:],
         messages={name: file[f"messages/{name}"][:] for name in MESSAGE_COLUMNS},
         metrics=Metrics(),
@@ -266,6 +267,14 @@ def _read(file: Any) -> Log:
         **_read_paths(file["paths"], len(file.dimensions["vehicle"])),
     )
     return Log(str(file.mission), str(file.version), flight)
+
+
+def _channel(file: Any, name: str) -> np.ndarray:
+    """One channel (time, vehicle); not known where it was not logged yet when the log was written."""
+    if name in ADDED and name not in file.variables:
+        return np.full((len(file.dimensions["time"]), len(file.dimensions["vehicle"])), np.nan)
+    values: np.ndarray = file[name][:]
+    return values
 
 
 def _read_paths(group: Any, num_vehicles: int) -> Mapping[str, Any]:
