@@ -37,7 +37,8 @@ def _draw(axes: Any, flight: Flight, rows: np.ndarray) -> None:
 def _seabed(flight: Flight) -> np.ndarray:
     """Depth of the seabed below each vehicle (time, vehicle) [m]; NaN where it is not known."""
     depth = flight.channels["depth"]
-    return depth + flight.channels.get("altitude", np.full_like(depth, np.nan))
+    seabed: np.ndarray = depth + flight.channels.get("altitude", np.full_like(depth, np.nan))
+    return seabed
 
 
 def _has_seabed(flight: Flight) -> bool:
