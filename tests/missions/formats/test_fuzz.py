@@ -1,5 +1,6 @@
 """Whatever a path file holds, it is flown or refused with a reason: no other exception, and not for long."""
 
+import copy
 import json
 import time
 from pathlib import Path
@@ -97,7 +98,7 @@ def test_values_of_another_kind(name: str, changes: list[tuple[int, Any]]) -> No
     for at, value in changes:
         places = list(_places(content))
         container, key = places[at % len(places)]
-        container[key] = value
+        container[key] = copy.deepcopy(value)
     try_out(json.dumps(content).encode())
 
 

@@ -77,7 +77,8 @@ def to_plan(draft: Draft, origin: GeoPoint | None = None) -> Plan:
         MissionError: fewer than two places, or places too far from the origin.
     """
     if not draft.waypoints:
-        raise _error(draft, Position(draft.source, 0, ""), "holds no waypoint; a path needs at least two")
+        only = f", only {'; '.join(draft.notes)}" if draft.notes else ""
+        raise _error(draft, Position(draft.source, 0, ""), f"holds no waypoint{only}; a path needs at least two")
     home = origin or draft.waypoints[0].place
     places = np.array([waypoint.place for waypoint in draft.waypoints])
     points = np.column_stack(to_local(places[:, 0], places[:, 1], home))

@@ -3,7 +3,7 @@
     QGC WPL 110
     index current frame command p1 p2 p3 p4 latitude longitude altitude autocontinue
 
-Row 0 is home, where it is a waypoint above the sea: the vehicle is there already.
+Row 0 is home, where it is a waypoint, in whatever frame: the vehicle is there already.
 
 Source: mavlink.io/en/file_formats, plain-text file format.
 """
@@ -97,7 +97,7 @@ def _row(
 
 
 def _is_home(command: Command) -> bool:
-    return command.number == 0 and command.code == WAYPOINT and command.frame == ABOVE_SEA
+    return command.number == 0 and command.code == WAYPOINT
 
 
 def _command(words: list[str], position: Position, problems: list[Problem]) -> Command:
