@@ -116,6 +116,20 @@ def test_medusa_text_becomes_a_mission_that_opens(desk: Path, cardume: Cardume) 
     ]
 
 
+@pytest.mark.parametrize("name", ["boat_speeds.plan", "estuary.waypoints", "yo_yo.plan", "line.geojson"])
+def test_a_path_file_becomes_a_mission_to_be_edited(desk: Path, cardume: Cardume, name: str) -> None:
+    (desk / "in").mkdir()
+    (desk / "out").mkdir()
+    (desk / "in" / name).write_bytes((FOLDER / name).read_bytes())
+    code, out, _ = cardume("convert", f"in/{name}", "out/mission.yaml")
+    assert (code, "to be edited" in out or "which stay in" in out) == (0, True)
+    assert cardume("convert", "out/mission.yaml", "back.plan").code == 0
+    one, other = read_plan(FOLDER / name), read_plan(desk / "back.plan")
+    for a, b in zip(one.segments, other.segments, strict=True):
+        assert (a.north, a.east, a.length) == pytest.approx((b.north, b.east, b.length), abs=1e-3)
+        assert (a.speed or 0.5) == pytest.approx(b.speed)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

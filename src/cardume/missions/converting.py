@@ -6,6 +6,7 @@ Whoever adds a way, such as from a log to tracks, adds its kinds of file to `KIN
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -191,14 +192,32 @@ def _resolve(request: Request) -> Conversion:
 
 
 def _to_mission(request: Request) -> Conversion:
-    from cardume.missions.drafting import draft_mission, is_smooth, place_section, segments_section
+    from cardume.missions.drafting import draft_mission, is_smooth, segments_section
 
     plan, _ = _plan_of(request)
-    if not is_smooth(plan.segments):
-        raise InputError("paths with corners cannot be written as missions yet")
-    path = [place_section(plan.origin), *segments_section(plan.segments)]
+    if is_smooth(plan.segments):
+        path, what = segments_section(plan.segments), f"{len(plan.segments)} lines and arcs, to be edited"
+    else:
+        path, what = _cornered(request, plan)
     text = draft_mission(plan, path, plan.name, request.speed)
-    return Conversion(content=text.encode(), holds=f"mission: {len(plan.segments)} pieces", notes=plan.notes)
+    return Conversion(content=text.encode(), holds=f"mission: {what}", notes=plan.notes)
+
+
+def _cornered(request: Request, plan: Plan) -> tuple[list[str], str]:
+    """The section of a path with corners: its points, or where its legs have speeds of their own its file."""
+    from cardume.missions.drafting import file_section, waypoints_section
+    from cardume.missions.route import PATHS
+
+    has_more = len({s.speed for s in plan.segments}) > 1 or any(s.curvature or s.curve for s in plan.segments)
+    if not has_more and "waypoints" in PATHS:
+        return waypoints_section(plan.segments), f"{len(plan.segments) + 1} points, to be edited"
+    if request.vehicle:
+        raise InputError(
+            f"the own path of {printable(request.vehicle)} has corners, and more than points and one speed: a mission"
+            " cannot hold it by itself; convert it to .medusa.txt"
+        )
+    file = os.path.relpath(request.source, request.target.resolve().parent)
+    return file_section(file), f"{len(plan.segments)} pieces of path, which stay in {printable(request.source)}"
 
 
 def _from_log(request: Request) -> Conversion:

@@ -34,9 +34,12 @@ def draft_mission(plan: Plan, path: Sequence[str], name: str, speed: float | Non
     length = sum(segment.length for segment in plan.segments)
     speeds = [segment.speed or speed or USUAL_SPEED for segment in plan.segments]
     seconds = 60.0 + length / (SLOWEST * min(speeds))
-    lines = ["cardume: 1", f"name: {safe_name(name)}", f"duration: {min(round(seconds), LONGEST)} s", *path]
-    if any(segment.speed is None for segment in plan.segments):
-        lines.append(f"formation: {{speed: {format_quantity(speed or USUAL_SPEED, 'm/s')}}}")
+    lines = ["cardume: 1", f"name: {safe_name(name)}", f"duration: {min(round(seconds), LONGEST)} s"]
+    if "type: file" not in path[0]:
+        lines.append(place_section(plan.origin))
+    lines += path
+    if any(segment.speed is None for segment in plan.segments) or path[1:2] == ["  type: waypoints"]:
+        lines.append(f"formation: {{speed: {format_quantity(speeds[0], 'm/s')}}}")
     lines.append("vehicles:")
     for number, member in enumerate(plan.members):
         lines += _vehicle(member, has_usbl=number == 0 and len(plan.members) > 1)
@@ -90,6 +93,14 @@ def segments_section(segments: Sequence[Segment]) -> list[str]:
             shape = f"arc: {_meters(1.0 / abs(segment.curvature))}, turn: {turn}, angle: {angle}"
         lines.append(f"    - {{{shape}{speed}}}")
     return lines
+
+
+def waypoints_section(segments: Sequence[Segment]) -> list[str]:
+    """A section `path` of straight legs that meet at corners."""
+    last = end_of(segments[-1])
+    points = [(segment.north, segment.east) for segment in segments] + [(last.north, last.east)]
+    places = [f"    - {{north: {_meters(north)}, east: {_meters(east)}}}" for north, east in points]
+    return ["path:", "  type: waypoints", "  points:", *places]
 
 
 def _vehicle(member: Member, has_usbl: bool) -> list[str]:
