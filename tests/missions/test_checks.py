@@ -112,6 +112,17 @@ OUTER = HULL.replace("name: a", "name: b").replace("0.5 m/s}}", "0.5 m/s}, offse
 DUO, TWO = mission([POINT, BESIDE], MEETS), mission([HULL, BESIDE], MEETS)
 ABREAST, FOLLOWING = mission([HULL, OUTER], MEETS, MOWER), ["current.speed=0.25 m/s", "current.towards=0 deg"]
 TO_AND_FRO = mission([HULL], MEETS, MOWER)
+STILL = MEETS.replace("current: {type: uniform, speed: 0.1 m/s, towards: 90 deg}", "")
+GUSTY = mission(
+    [POINT], STILL + "current: {type: gauss_markov, speed: 0.1 m/s, towards: 90 deg, sigma_along: 0.01 m/s}"
+)
+POINTS = "{depth: 0 m, speed: 0.2 m/s, towards: 90 deg}, {depth: 5 m, speed: 0 m/s}"
+LAYERED = mission([POINT], STILL + f"current: {{type: sheared, profile: [{POINTS}]}}")
+HULL_LAYERED = mission([HULL], STILL + f"current: {{type: sheared, profile: [{POINTS}]}}")
+BELOW = mission(
+    [HULL.replace("{name: a", "{name: a, depth: 5 m")], STILL + f"current: {{type: sheared, profile: [{POINTS}]}}"
+)
+TURNING = mission([POINT], STILL + "current: {type: step, later_speed: 0.1 m/s, later_towards: 90 deg, at: 100 s}")
 SILENT, UNDER = "vehicles.a.messaging=none", "vehicles.b.depth=5 m"
 
 # What spoils a mission that is otherwise without this finding, its level and its key.
@@ -129,6 +140,11 @@ CASES = [
     (ALONE, ["current.speed=0.02 m/s", "compensation=none"], "note", "compensation.law"),
     (ALONE, ["current.speed=0.2 m/s", "current_observer=none"], "warning", "current_observer.law"),
     (ALONE, ["current.variation_sigma=0.3 m/s", "speed_reference=water"], "warning", "current.variation_sigma"),
+    (GUSTY, ["current.sigma_across=0.3 m/s", "speed_reference=water"], "warning", "current.sigma_across"),
+    (LAYERED, ["current.scale=3", "speed_reference=water"], "error", "formation.speed"),
+    (HULL_LAYERED, ["current.scale=8.5"], "error", "current.scale"),
+    (TURNING, ["current.later_speed=0.6 m/s", "speed_reference=water"], "error", "formation.speed"),
+    (TURNING, ["current.later_speed=0.7 m/s", "current.at=410 s", "speed_reference=water"], "warning", "end"),
     (DUO, ["current.speed=0.4 m/s", "speed_reference=water"], "warning", "coordination.gain"),
     (ALONE, ["current.speed=0.6 m/s", "current.towards=0 deg"], "warning", "formation.speed"),
     (ALONE, ["current.speed=0.6 m/s", "current.towards=0 deg", "speed_reference=water"], "warning", "end"),
@@ -188,6 +204,13 @@ def test_it_finds_what_is_wrong_and_what_it_suggests_passes(text: str, spoils: l
     assert not [f for f in left if (f.level, f.key) == (level, key)], f"{found.suggestion} leaves {left}"
     errors = {f.key for f in findings(text, spoils) if f.level == "error"}
     assert {f.key for f in left if f.level == "error"} <= errors, f"{found.suggestion} brings {left}"
+
+
+def test_a_sheared_current_counts_at_the_depth_of_the_vehicle() -> None:
+    """1.7 m/s at the surface beats a MEDUSA there, and not the one at 5 m, where the water stands still."""
+    strong = ["current.scale=8.5"]
+    assert told(HULL_LAYERED, "current.scale", *strong) == {"error"}
+    assert not told(BELOW, "current.scale", *strong)
 
 
 @pytest.mark.parametrize("name", library.names())

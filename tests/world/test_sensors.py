@@ -9,13 +9,14 @@ from hypothesis import strategies as st
 from numba import config
 
 from cardume.maths import to_cartesian, to_ned
-from cardume.signals import AhrsReading, Baseline, DvlReading, Noise, Sampling, UsblReading, VesselState
-from cardume.world.sensors import ahrs, depth, dvl, gnss, thruster_speed, usbl
+from cardume.signals import AhrsReading, Baseline, DvlReading, Noise, Sampling, Seabed, UsblReading, VesselState, Water
+from cardume.world.sensors import ahrs, bottom_track, depth, dvl, gnss, thruster_speed, usbl
+from cardume.world.sensors.doppler import Ping
 from cardume.world.sensors.gnss import Drift
 
 DEGREE = math.pi / 180.0
 EACH_SECOND = Sampling(1.0, 12.0)
-LAWS = (gnss, ahrs, depth, dvl, thruster_speed, usbl)
+LAWS = (gnss, ahrs, depth, dvl, bottom_track, thruster_speed, usbl)
 
 some_number = st.floats(-1e4, 1e4)
 noises = st.builds(Noise, *[st.floats(-6.0, 6.0)] * 4)
@@ -33,7 +34,7 @@ def normal_noises(count: int, seed: int) -> list[Noise]:
 def test_without_errors_a_reading_is_the_truth_to_the_last_bit(truth: VesselState, noise: Noise) -> None:
     assert ahrs(truth, noise, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0) == AhrsReading(truth.heading, truth.yaw_rate, 0.0, 0.0)
     assert depth(truth, noise, 0.0) == truth.depth
-    assert dvl(truth, noise, 0.0) == DvlReading(truth.surge, truth.sway)
+    assert dvl(truth, noise, EACH_SECOND, Ping(), 0.0)[0] == DvlReading(truth.surge, truth.sway)
     assert thruster_speed(truth, noise, 0.0) == truth.shaft_speed
     fix, drift = gnss(truth, noise, EACH_SECOND, Drift(), 0.0)
     assert np.array_equal(fix, (truth.north, truth.east)) == (truth.depth <= 0.2)
@@ -119,8 +120,65 @@ def test_depth_is_off_by_its_bias_and_noise() -> None:
 
 def test_a_doppler_log_is_scaled_and_noisy() -> None:
     truth = VesselState(surge=0.5, sway=-0.02)
-    assert dvl(truth, Noise(1.0, -2.0, 9.0, 9.0), 0.004, 1.01) == pytest.approx((0.509, -0.0282))
-    assert dvl(truth, Noise(1.0, -2.0, 9.0, 9.0)) == pytest.approx((0.504, -0.028))
+    noise = Noise(1.0, -2.0, 9.0, 9.0)
+    assert dvl(truth, noise, EACH_SECOND, Ping(), 0.004, 1.01)[0] == pytest.approx((0.509, -0.0282))
+    assert dvl(truth, noise, EACH_SECOND, Ping())[0] == pytest.approx((0.504, -0.028))
+
+
+def test_a_doppler_log_is_biased_and_twisted_in_its_own_axes() -> None:
+    truth = VesselState(surge=0.5, heading=1.0)
+    silence = Noise(0.0, 0.0, 0.0, 0.0)
+    biased, _ = dvl(truth, silence, EACH_SECOND, Ping(), 0.0, 1.0, 0.02, -0.03)
+    assert biased == pytest.approx((0.52, -0.03))
+    twisted, _ = dvl(truth, silence, EACH_SECOND, Ping(), 0.0, 1.0, 0.0, 0.0, 2.0 * DEGREE)
+    # turned to starboard, it sees the way ahead to port
+    assert twisted == pytest.approx((0.5 * math.cos(2.0 * DEGREE), -0.5 * math.sin(2.0 * DEGREE)))
+
+
+@given(states, noises, st.floats(-2.0, 2.0), st.floats(-2.0, 2.0))
+def test_bottom_track_is_the_velocity_over_ground(truth: VesselState, noise: Noise, north: float, east: float) -> None:
+    near = truth._replace(depth=10.0, heading=math.fmod(truth.heading, 6.0))
+    reading, _ = bottom_track(near, Water(north, east), Seabed(20.0), noise, EACH_SECOND, Ping(), sigma=0.0)
+    over_ground = to_ned(near.heading, reading.surge, reading.sway)
+    through = to_ned(near.heading, near.surge, near.sway)
+    scale = 1.0 + abs(truth.surge) + abs(truth.sway)
+    assert over_ground == pytest.approx((through[0] + north, through[1] + east), abs=1e-12 * scale)
+
+
+@pytest.mark.parametrize(("depth", "hears"), [(0.0, False), (5.0, True), (39.0, True), (39.8, False), (41.0, False)])
+def test_bottom_track_hears_the_seabed_within_its_range(depth: float, hears: bool) -> None:
+    """35 m of range over 40 m of water, and nothing nearer than 0.3 m."""
+    truth = VesselState(surge=0.5, depth=depth)
+    silence = Noise(0.0, 0.0, 0.0, 0.0)
+    reading, memory = bottom_track(truth, Water(), Seabed(40.0), silence, EACH_SECOND, Ping(), range=35.0, sigma=0.0)
+    assert (reading.surge == 0.5) is hears
+    assert math.isnan(reading.surge) is not hears
+    assert (memory.silent == 0.0) is hears
+    nowhere, _ = bottom_track(truth, Water(), Seabed(math.nan), silence, EACH_SECOND, Ping())
+    assert math.isnan(nowhere.surge)
+
+
+def test_the_last_good_reading_is_held_and_then_there_is_none() -> None:
+    silence, each = Noise(0.0, 0.0, 0.0, 0.0), Sampling(0.5, 0.0)
+    fails = silence._replace(c=3.0)  # exp(-9 / 2) = 0.011 < 0.1
+    reading, memory = dvl(VesselState(surge=0.5), silence, each, Ping(), 0.0, invalid=0.1)
+    assert reading.surge == 0.5
+    for _ in range(4):  # 2 s
+        reading, memory = dvl(VesselState(surge=0.7), fails, each, memory, 0.0, invalid=0.1)
+        assert reading.surge == 0.5
+    reading, memory = dvl(VesselState(surge=0.7), fails, each, memory, 0.0, invalid=0.1)
+    assert math.isnan(reading.surge)
+    reading, _ = dvl(VesselState(surge=0.7), silence, each, memory, 0.0, invalid=0.1)
+    assert reading.surge == 0.7
+
+
+@pytest.mark.parametrize("share", [0.1, 0.6])
+def test_as_many_pings_fail_as_said(share: float) -> None:
+    each, failed = Sampling(0.5, 0.0), 0
+    for noise in normal_noises(4000, 12):
+        _, memory = dvl(VesselState(surge=0.5), noise, each, Ping(), invalid=share)
+        failed += memory.silent > 0.0
+    assert failed / 4000 == pytest.approx(share, abs=4.0 * math.sqrt(share * (1.0 - share) / 4000))
 
 
 @given(st.floats(-200.0, 200.0), st.floats(0.5, 2.0), noises)
@@ -204,6 +262,7 @@ def test_every_sensor_has_a_period_and_a_latency() -> None:
         "ahrs": (0.1, 0.0),
         "depth": (0.2, 0.0),
         "dvl": (0.5, 0.0),
+        "bottom_track": (0.2, 0.0),
         "thruster_speed": (0.1, 0.0),
         "usbl": (1.0, 0.1),
     }

@@ -17,6 +17,7 @@ from typing import Any
 
 import click
 
+from cardume.cli.calibrate import calibrate
 from cardume.cli.check import check
 from cardume.cli.compare import compare
 from cardume.cli.convert import convert
@@ -69,7 +70,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, compare, report, list_, new, convert):
+for _command in (run, check, compare, report, calibrate, list_, new, convert):
     cli.add_command(_command)
 
 

@@ -273,7 +273,7 @@ def _sensors(vehicle: Vehicle, tick: float, has_seabed: bool, catalog: Catalog) 
     laws: dict[str, Choice] = {}
     if sensors.ideal:
         kinds = (*IDEAL_SENSORS, *(("altimeter",) if has_seabed else ()))
-        laws = {kind: _exact(next(iter(laws_of(kind).values())), tick) for kind in kinds}
+        laws = {kind: _exact(laws_of(kind)[kind], tick) for kind in kinds}
     else:
         for kind in ("gnss", "ahrs", "depth", "usbl", "dvl", "altimeter"):
             if (chosen := getattr(sensors, kind)) is not None:

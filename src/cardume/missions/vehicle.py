@@ -138,7 +138,7 @@ class Sensors:
     ahrs: Annotated[LawChoice | None, Laws("ahrs", words=NO_SENSOR), "heading and yaw rate"] = None
     depth: Annotated[LawChoice | None, Laws("depth", words=NO_SENSOR), "depth, from pressure"] = None
     usbl: Annotated[LawChoice | None, Laws("usbl", words=NO_SENSOR), "where the others are, by sound"] = None
-    dvl: Annotated[LawChoice | None, Laws("dvl", words=NO_SENSOR), "velocity, by sound"] = None
+    dvl: Annotated[LawChoice | None, Laws("dvl", default="dvl", words=NO_SENSOR), "velocity, by sound"] = None
     altimeter: Annotated[LawChoice | None, Laws("altimeter", words=NO_SENSOR), "altitude, by sound"] = None
     thruster_speed: Annotated[
         ThrusterSpeed | None, Group(ThrusterSpeed, words=NO_SENSOR), "shaft speed; `scale` is a of eq. (38)"

@@ -279,17 +279,19 @@ def seabed_below(fleet: Fleet, vehicle: int, vessel: VesselState) -> Seabed:
 
 @compiled
 def sense_velocity(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
-    """Velocity through the water by DVL."""
+    """Velocity through the water, or over ground, by DVL."""
     timing = timing_of(fleet, vehicle, DVL)
     due = timing.next_sample <= now
     if some(due):
+        then = vessel_then(fleet, vehicle, timing, now)
         reading: DvlReading = read_dvl(
             book_of(fleet, vehicle, fleet.tick),
             0,
-            vessel_then(fleet, vehicle, timing, now),
+            then,
             water_then(fleet, vehicle, timing, now),
             noise_of(fleet, vehicle, DVL, timing, now),
             sampling_of(fleet, timing, now),
+            seabed_below(fleet, vehicle, then),
         )
         held = where(due, _with_speeds(held, held.shaft_speed, reading.surge, reading.sway), held)
         schedule_next(fleet, vehicle, DVL, timing, due)

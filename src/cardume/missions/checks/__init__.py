@@ -62,6 +62,7 @@ CHECKS: tuple[Check, ...] = (
     depths.check_slope,
     depths.check_aground,
     depths.check_echo,
+    depths.check_bottom_track,
     depths.check_limits,
     depths.check_dive,
     timing.check_duration,

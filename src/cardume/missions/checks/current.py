@@ -175,6 +175,9 @@ def _drift(scene: Scene, craft: Craft) -> Iterator[Ranked]:
         return
     threshold = scene.mission.transient.threshold
     endless = offset >= threshold
+    if craft.tracks_bottom:
+        yield Ranked(offset, _unused_track(scene, craft, offset))
+        return
     crab, observer = scene.key(craft, "compensation.law"), scene.key(craft, "current_observer.law")
     is_blind = craft.law("compensation").law.name != "none"
     message = (
@@ -188,6 +191,17 @@ def _drift(scene: Scene, craft: Craft) -> Iterator[Ranked]:
     words += [] if is_blind else [setting_word(crab, "crab")]
     key = observer if is_blind else crab
     yield Ranked(offset, Finding("warning" if endless else "note", key, message, both(*words)))
+
+
+def _unused_track(scene: Scene, craft: Craft, offset: float) -> Finding:
+    key = scene.key(craft, "compensation.law")
+    message = (
+        f"{craft.name} measures over ground how it drifts, and does not steer by it: a current of up to"
+        f" {show(np.abs(craft.stations.across).max(), 'm/s')} across holds it up to {show(offset, 'm')} off its path;"
+        " crab with use_sway: 1 turns the heading by the drift angle"
+    )
+    sway = scene.key(craft, "compensation.use_sway")
+    return Finding("warning", key, message, both(setting_word(key, "crab"), setting_word(sway, "1")))
 
 
 def steady_offset(craft: Craft, speed: np.ndarray) -> float:

@@ -170,6 +170,29 @@ def check_echo(scene: Scene) -> Iterator[Finding]:
             )
 
 
+def check_bottom_track(scene: Scene) -> Iterator[Finding]:
+    """A bottom track that hears no seabed on some of the way."""
+    for craft in scene.crafts:
+        if not craft.tracks_bottom:
+            continue
+        key, seabed = scene.key(craft, "sensors.dvl"), seabed_at(scene, craft)
+        if "bathymetry" not in craft.plan.laws:
+            message = f"{craft.name} measures its velocity over a seabed, and the mission has none"
+            yield Finding("error", "bathymetry", message, setting_word("bathymetry", "{type: flat, depth: 20 m}"))
+        elif seabed is not None:
+            altitude = seabed - wanted_depth(scene, craft)
+            reach, nearest = craft.law("dvl").value("range"), craft.law("dvl").value("nearest")
+            deaf = ~((altitude >= nearest) & (altitude <= reach))
+            if deaf.any():
+                farthest = float(np.nan_to_num(altitude).max())
+                message = (
+                    f"{craft.name} hears the seabed from {show(nearest, 'm')} to {show(reach, 'm')} below it, and on"
+                    f" {100.0 * deaf.mean():.0f} % of its way it is not there (up to {show(farthest, 'm')}): then its"
+                    " speed comes from the shafts, through the water, and it knows of no current"
+                )
+                yield Finding("warning", key, message, at_least(f"{key}.range", farthest, "m") if farthest > reach else "")
+
+
 def check_limits(scene: Scene) -> Iterator[Finding]:
     """Limits that the mission itself goes beyond."""
     for craft in scene.crafts:

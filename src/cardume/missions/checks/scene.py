@@ -12,6 +12,7 @@ from cardume.missions.checks.fixes import Fixes, fixes_of
 from cardume.missions.checks.stations import Stations, in_current, stations_of
 from cardume.missions.mission import Mission
 from cardume.missions.planning import Planned
+from cardume.missions.schema import Profile
 from cardume.missions.vehicle import Vehicle
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
 
@@ -61,9 +62,18 @@ class Craft:
         compensation, observer = self.law("compensation").law, self.law("current_observer").law
         if not compensation.is_builtin:
             return None
+        if self.tracks_bottom:
+            steers = compensation.name == "crab" and self.law("compensation").value("use_sway") == 1.0
+            is_obeyed = self.law("model").law.name == "kinematic"  # has the speed asked for, through the water
+            return ("course" if is_obeyed else "course and speed") if steers else "nothing"
         if compensation.name == "none" or (observer.is_builtin and observer.name == "none"):
             return "nothing"
         return "course and speed" if self.plan.setup.over_ground else "course"
+
+    @property
+    def tracks_bottom(self) -> bool:
+        """Whether it measures its velocity over ground."""
+        return "dvl" in self.plan.laws and self.plan.laws["dvl"].law.name == "bottom_track"
 
     @property
     def correction(self) -> float:
@@ -147,8 +157,8 @@ def make_scene(mission: Mission, planned: Planned) -> Scene:
     vehicles = planned.plan.vehicles
     still = [stations_of(vehicle.path, mission.duration) for vehicle in vehicles]
     in_water = [
-        in_current(stations, planned.plan, vehicle.laws["current"], vehicle.setup.depth)
-        for stations, vehicle in zip(still, vehicles, strict=True)
+        in_current(stations, planned.plan, vehicle.laws["current"], _depths(told, stations))
+        for stations, vehicle, told in zip(still, vehicles, mission.vehicles, strict=True)
     ]
     distances = _distances(vehicles, still)
     fixes = fixes_of(vehicles, distances, mission.tick)
@@ -165,6 +175,15 @@ def make_scene(mission: Mission, planned: Planned) -> Scene:
         for k in range(len(vehicles))
     )
     return Scene(mission=mission, plan=planned.plan, crafts=crafts, reference=planned.reference, distances=distances)
+
+
+def _depths(vehicle: Vehicle, stations: Stations) -> np.ndarray:
+    """The depth [m] that a vehicle is told to keep at each of its stations (n,)."""
+    depth = vehicle.depth
+    if not isinstance(depth, Profile):
+        return np.full(len(stations.time), depth)
+    over = stations.time if depth.over == "time" else stations.state + vehicle.offset.ahead
+    return np.array([depth.at(float(value)) for value in over])
 
 
 def place_at(stations: Stations, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

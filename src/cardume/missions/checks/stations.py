@@ -109,7 +109,7 @@ def _along_segment(row: np.ndarray, length: float, time: float, speed: float) ->
     )
 
 
-def in_current(stations: Stations, plan: Plan, water: Choice, depth: float) -> Stations | None:
+def in_current(stations: Stations, plan: Plan, water: Choice, depths: np.ndarray) -> Stations | None:
     """The stations with the mission's current; None where the current is a user's own law.
 
     The law itself is asked, without noise: what it then gives is the mean, at the place, depth and time of a station.
@@ -118,13 +118,14 @@ def in_current(stations: Stations, plan: Plan, water: Choice, depth: float) -> S
         stations: in still water.
         plan: holds the table of a gridded or sheared current.
         water: the law of the current.
-        depth: [m] of the vehicle.
+        depths: [m] (n,) of the vehicle at each station.
     """
     if not water.law.is_builtin:
         return None
     looked_up = _thinned(stations)
-    places = zip(looked_up.north, looked_up.east, looked_up.time, strict=True)
-    flows = [_mean(water, plan, (n, e, depth, t)) for n, e, t in places]
+    deep = np.interp(looked_up.time, stations.time, depths)
+    places = zip(looked_up.north, looked_up.east, deep, looked_up.time, strict=True)
+    flows = [_mean(water, plan, place) for place in places]
     if water.law.name == "gridded":
         stations = looked_up
     north, east = (np.interp(stations.time, looked_up.time, part) for part in np.array(flows, float).T)

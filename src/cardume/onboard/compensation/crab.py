@@ -4,7 +4,7 @@ from typing import Annotated
 
 from cardume.compiler import some
 from cardume.laws import Bounds, MetersPerSecond, Number, Positive
-from cardume.maths import asin, atan2, clip, sincos, sqrt
+from cardume.maths import asin, clip, maximum, sincos, sqrt
 from cardume.onboard.compensation.base import Steering, compensation_law
 from cardume.signals import Course, Motion
 
@@ -21,7 +21,7 @@ def crab(
     """Cancel the current across the wanted course by the heading, and along it by the speed.
 
     psi_d = chi_d - asin(Vperp / U) - atan2(v, u),   U = hypot(u, v)
-    u_d = hypot(v_d - Vpar, Vperp)  over ground;  u_d = v_d  through the water
+    u_d = sqrt((v_d - Vpar)^2 + Vperp^2 - v^2)  over ground;  u_d = v_d  through the water
 
     Vpar and Vperp are the estimated current along and to starboard of the course, u and v surge and
     sway.  The printed sign of eq. (36) doubles the drift instead of cancelling it.  Feasible where
@@ -30,7 +30,8 @@ def crab(
     Args:
         course: wanted course [rad] and speed [m/s] along it.
         motion: believed motion; the same, possibly biased, speed that the current observer uses.
-        use_sway: [-] 1 counts the sway v in, 0 leaves it out as the paper does.
+        use_sway: [-] 1 counts the sway v in, 0 leaves it out as the paper does (v = 0). With `bottom_track` u and v
+            are over ground, v is the current's, and 1 is how the heading learns of it.
         speed_min: [m/s] the least U in the quotient, for a vehicle that starts from rest.
 
     Returns:
@@ -45,7 +46,7 @@ def crab(
     speed = clip(sqrt(motion.surge * motion.surge + sway * sway), speed_min, 1e9)
     heading = course.course - asin(clip(across / speed, -LIMIT, LIMIT))
     if some(use_sway > 0.0):
-        heading = heading - atan2(sway, speed)
+        heading = heading - asin(clip(sway / speed, -LIMIT, LIMIT))  # atan2(v, u) ahead, and quiet at rest
     needed = course.speed - along
-    through_water = sqrt(needed * needed + across * across)
+    through_water = sqrt(maximum(needed * needed + across * across - sway * sway, 0.0))
     return Steering(heading, course.speed + course.over_ground * (through_water - course.speed))

@@ -1,4 +1,6 @@
-"""Sensors: `gnss`, `ahrs`, `depth`, `usbl`, `dvl`, `thruster_speed`, `altimeter`; each a family with one law.
+"""Sensors: `gnss`, `ahrs`, `depth`, `usbl`, `dvl`, `thruster_speed`, `altimeter`, each a family with a law of its name.
+
+`dvl`, which is water track, stands beside `bottom_track`.
 
 With all its sigmas, biases and misalignments 0 and its scales 1 a law returns the truth, to the last bit wherever no
 angle has to be computed.
@@ -22,6 +24,7 @@ from cardume.world.sensors.base import (
     thruster_speed_sensor,
     usbl_sensor,
 )
+from cardume.world.sensors.bottom_track import bottom_track
 from cardume.world.sensors.depth import depth
 from cardume.world.sensors.dvl import dvl
 from cardume.world.sensors.gnss import gnss
@@ -33,6 +36,7 @@ __all__ = [
     "ahrs_sensor",
     "altimeter",
     "altimeter_sensor",
+    "bottom_track",
     "depth",
     "depth_sensor",
     "dvl",
