@@ -57,7 +57,8 @@ def heard(
 ) -> tuple[DvlReading, Ping]:
     """The reading, or the last good one where a ping fails; nothing once that is too old.
 
-    A ping fails where nothing is in range, and by chance: exp(-(n_3^2 + n_4^2) / 2), uniform in (0, 1), below `invalid`.
+    A ping fails where nothing is in range, and by chance: exp(-(n_3^2 + n_4^2) / 2), uniform in (0, 1), is below
+    `invalid`.
 
     Args:
         reading: of this ping.

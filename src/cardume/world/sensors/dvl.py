@@ -44,8 +44,8 @@ def dvl(
     Returns:
         Surge and sway [m/s] through the water, body.
 
-    Source: paper eq. (32), V_m = R v + V_d; 0.004 m/s is the default of LSTS DUNE, Simulators/DVL, "Standard Deviation -
-    Water Velocity".
+    Source: paper eq. (32), V_m = R v + V_d; 0.004 m/s is the default of LSTS DUNE, Simulators/DVL, "Standard
+    Deviation - Water Velocity".
     """
     reading = disturbed(truth.surge, truth.sway, noise, LogErrors(sigma, scale, bias_surge, bias_sway, misalignment))
     always = memory.silent >= 0.0
