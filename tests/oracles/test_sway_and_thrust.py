@@ -1,4 +1,4 @@
-"""Rows G and I of theory.md with MEDUSA's hull and thrusters: drift in a turn, and what a wrong thrust does to a speed."""
+"""Rows G and I of theory.md with MEDUSA's hull: drift in a turn, and what a wrong thrust does to a speed."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from flying import fly_text, limit, value_at
+from flying import fly_text, value_at
 
 MISSION = """
 cardume: 1
@@ -21,7 +21,7 @@ guidance: {{{guidance}}}
 compensation: {compensation}
 current_observer: {observer}
 position: direct
-speed_reference: water
+speed_reference: {reference}
 vehicles:
   - {{name: alone, model: {model}, sensors: {sensors}, start: {{speed: {speed!r} m/s}}}}
 end: continue
@@ -59,7 +59,7 @@ def resting(speed: float, radius: float, offset: float, law: str) -> tuple[float
     return (e, *turn_at(speed, e, radius))
 
 
-def flown(tick: float, duration: float = 160.0, radius: float = 12.0, turn: str = "starboard", **given):
+def flown(tick: float, duration: float, radius: float = 12.0, turn: str = "starboard", **given):
     """A MEDUSA with exact sensors on a circle, long enough to rest."""
     values = {
         "path": f"type: circle, centre: {{north: 0, east: 0}}, radius: {radius!r}, turn: {turn}",
@@ -69,15 +69,19 @@ def flown(tick: float, duration: float = 160.0, radius: float = 12.0, turn: str 
         "observer": "none",
         "model": "medusa",
         "sensors": "ideal",
+        "reference": "water",
         "more": "",
     }
-    text = MISSION.format(duration=duration, tick=tick, step=min(tick, 0.05), **{**values, **given})
+    text = MISSION.format(duration=duration, tick=tick, step=tick, **{**values, **given})
     return fly_text(text)
 
 
-def rest(channel: str, duration: float = 160.0, **given) -> float:
-    """A channel at rest, in the limit of no tick: the autopilot sees its reference late by half of one."""
-    return limit(lambda tick: value_at(flown(tick, duration, **given), channel, duration - tick), (0.2, 0.1, 0.05))[0]
+def rest(channel: str, **given) -> float:
+    """A channel after ten minutes, when the slow integral of the heading loop has nothing left to do.
+
+    With one plant step in a tick the autopilot steers by references of now, so nothing is left of the tick.
+    """
+    return value_at(flown(0.1, 600.0, **given), channel, 599.9)
 
 
 # ---- G ---------------------------------------------------------------------------------------------------------------
@@ -104,31 +108,31 @@ def test_g_line_of_sight_rests_outside_the_arc(turn: str) -> None:
     """Row G flown: e = -.1804055481 m, v = -.0180405548 m/s, r = .0410762477 rad/s at u = .5, R = 12."""
     sigma = 1.0 if turn == "starboard" else -1.0
     e, v, r, _ = resting(0.5, 12.0, 5.0, "line_of_sight")
-    assert sigma * rest("cross_track", turn=turn) == pytest.approx(e, rel=5e-3)
-    assert sigma * rest("sway", turn=turn) == pytest.approx(v, rel=1e-3)
-    assert sigma * rest("yaw_rate", turn=turn) == pytest.approx(r, rel=1e-3)
+    assert sigma * rest("cross_track", turn=turn) == pytest.approx(e, rel=1e-6)
+    assert sigma * rest("sway", turn=turn) == pytest.approx(v, rel=1e-6)
+    assert sigma * rest("yaw_rate", turn=turn) == pytest.approx(r, rel=1e-6)
 
 
 def test_g_line_of_sight_with_other_parameters() -> None:
     guidance = "law: line_of_sight, lookahead: 8"
     e, v, _, _ = resting(0.4, 20.0, 8.0, "line_of_sight")
-    assert rest("cross_track", radius=20.0, speed=0.4, guidance=guidance, duration=260.0) == pytest.approx(e, rel=1e-2)
-    assert rest("sway", radius=20.0, speed=0.4, guidance=guidance, duration=260.0) == pytest.approx(v, rel=2e-3)
+    assert rest("cross_track", radius=20.0, speed=0.4, guidance=guidance) == pytest.approx(e, rel=1e-5)
+    assert rest("sway", radius=20.0, speed=0.4, guidance=guidance) == pytest.approx(v, rel=1e-5)
 
 
 def test_g_the_arcsine_law_rests_outside_the_arc() -> None:
     """Row G: e = (u / k1) sin beta."""
     e, v, _, _ = resting(0.5, 12.0, 0.1, "arcsine")
     guidance = "law: arcsine, gain: 0.1"
-    assert rest("cross_track", guidance=guidance) == pytest.approx(e, rel=5e-3)
-    assert rest("sway", guidance=guidance) == pytest.approx(v, rel=1e-3)
+    assert rest("cross_track", guidance=guidance) == pytest.approx(e, rel=1e-6)
+    assert rest("sway", guidance=guidance) == pytest.approx(v, rel=1e-6)
 
 
 def test_g_sway_compensation_brings_it_onto_the_arc() -> None:
     """Row G: with psi_d = chi_d - asin(v / U) e = 0 and v = -.0183035802 m/s."""
     steers = {"compensation": "{law: crab, use_sway: 1}"}
-    assert rest("cross_track", **steers) == pytest.approx(0.0, abs=1.5e-3)
-    assert rest("sway", **steers) == pytest.approx(-0.0183035802, rel=1e-3)
+    assert rest("cross_track", **steers) == pytest.approx(0.0, abs=1e-6)
+    assert rest("sway", **steers) == pytest.approx(-0.0183035802, rel=1e-7)
 
 
 # ---- I ---------------------------------------------------------------------------------------------------------------
@@ -155,7 +159,7 @@ def test_i_a_shaft_speed_and_its_speed_flown() -> None:
 
 @pytest.mark.parametrize("factor", [1.1, 0.8, 1.5])
 def test_i_a_wrong_thrust_factor_is_the_root_of_it_in_speed(factor: float) -> None:
-    """Thrust believed f times as strong reads the speed sqrt(f) times too high: Vhat = (1 - sqrt f) u along the heading."""
+    """Thrust believed f times as strong reads the speed sqrt(f) times too high: Vhat = (1 - sqrt f) u ahead."""
     believed = factor * 1.77778e-6 * (30.0 / math.pi) ** 2
     reader = f"thruster_speed: {{sigma: 0, thrust_coefficient: {believed!r} N s^2/rad^2}}"
     flight = flown(
@@ -173,7 +177,7 @@ def test_i_a_wrong_thrust_factor_is_the_root_of_it_in_speed(factor: float) -> No
 
 
 def test_i_the_speed_lost_in_a_turn() -> None:
-    """Row I: at the thrust of .5 m/s a turn of R = 12 m takes u to .4983483136, and (37) reads a = 1.0033143212 too much."""
+    """Row I: at the thrust of .5 m/s a turn of R = 12 m takes u to .4983483136; (37) reads a = 1.0033143212."""
     thrust = 27.5 * 0.25
 
     def balance(u: float) -> float:
@@ -199,23 +203,18 @@ def test_i_the_speed_lost_in_a_turn() -> None:
 @pytest.mark.parametrize("along", [0.12, -0.12, 0.0])
 @pytest.mark.parametrize("across", [0.0, 0.1])
 def test_speed_over_ground_or_through_the_water(reference: str, along: float, across: float) -> None:
-    """`ground`: the path is made good at v_L; `water`: at sqrt(v_L^2 - Vperp^2) + Vpar, with a current known by (33)."""
+    """`ground`: the path is made good at v_L; `water`: at sqrt(v_L^2 - Vperp^2) + Vpar, the current found by (33)."""
     towards = math.atan2(across, along) % math.tau
     more = f"current: {{type: uniform, speed: {math.hypot(along, across)!r}, towards: {towards!r}}}"
-    text = MISSION.format(
-        duration=200.0,
-        tick=0.1,
-        step=0.05,
+    flight = flown(
+        0.1,
+        200.0,
         path=LINE,
-        speed=0.5,
-        guidance="law: line_of_sight, lookahead: 5",
         compensation="crab",
         observer="{law: complementary, k1: 0.2, k2: 0.01}",
-        model="medusa",
-        sensors="ideal",
+        reference=reference,
         more=more,
-    ).replace("speed_reference: water", f"speed_reference: {reference}")
-    flight = fly_text(text)
+    )
     gone = value_at(flight, "coordination_state", 199.0) - value_at(flight, "coordination_state", 159.0)
     expected = 0.5 if reference == "ground" else math.sqrt(0.25 - across**2) + along
     assert gone / 40.0 == pytest.approx(expected, abs=5e-4)
@@ -225,20 +224,5 @@ def test_speed_over_ground_or_through_the_water(reference: str, along: float, ac
 
 
 def test_both_are_the_same_in_still_water() -> None:
-    one = flown(0.1, 60.0, path=LINE)
-    other = fly_text(
-        MISSION.format(
-            duration=60.0,
-            tick=0.1,
-            step=0.05,
-            path=LINE,
-            speed=0.5,
-            guidance="law: line_of_sight, lookahead: 5",
-            compensation="none",
-            observer="none",
-            model="medusa",
-            sensors="ideal",
-            more="",
-        ).replace("speed_reference: water", "speed_reference: ground")
-    )
+    one, other = (flown(0.1, 60.0, path=LINE, reference=reference) for reference in ("water", "ground"))
     assert np.array_equal(one.channels["north"], other.channels["north"])

@@ -1,4 +1,4 @@
-"""docs/theory/medusa-calibration.md: every number of its table, from the models themselves and the published calibrations."""
+"""docs/theory/medusa-calibration.md: every number of its table, from the models and the published calibrations."""
 
 import re
 from pathlib import Path
@@ -59,8 +59,8 @@ def test_what_would_reconcile_them() -> None:
 
 @pytest.mark.parametrize(("scale", "speed", "ghost"), [(1.634, 0.306, -0.194), (0.612, 0.817, 0.317)])
 def test_what_it_does_to_a_mission(scale: float, speed: float, ghost: float) -> None:
-    """a = 1.634 or 0.612: asked for 0.5 m/s it goes 0.5 / a, and believes in a current of (1 - a) u along its heading."""
-    exact = "gnss: {sigma: 0 m, period: 0.1 s}, ahrs: {heading_sigma: 0 deg}"
+    """a = 1.634 or 0.612: asked for 0.5 m/s it goes 0.5 / a, and believes in a current of (1 - a) u ahead."""
+    exact = "gnss: {sigma: 0 m, period: 0.1 s}, ahrs: {heading_sigma: 0 deg, yaw_rate_sigma: 0 deg/s}"
     flight = fly_text(f"""
 cardume: 1
 name: ghost

@@ -190,9 +190,8 @@ def check_bottom_track(scene: Scene) -> Iterator[Finding]:
                     f" {100.0 * deaf.mean():.0f} % of its way it is not there (up to {show(farthest, 'm')}): then its"
                     " speed comes from the shafts, through the water, and it knows of no current"
                 )
-                yield Finding(
-                    "warning", key, message, at_least(f"{key}.range", farthest, "m") if farthest > reach else ""
-                )
+                wider = at_least(f"{key}.range", farthest, "m") if farthest > reach else ""
+                yield Finding("warning", key, message, wider)
 
 
 def check_limits(scene: Scene) -> Iterator[Finding]:
