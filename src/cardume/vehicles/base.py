@@ -5,9 +5,7 @@ model follows it at once) and the `Water` around it, and gives the state one pla
 """
 
 from collections.abc import Callable
-from inspect import signature
 from types import FunctionType
-from typing import Annotated, Any, get_type_hints
 
 from cardume.laws import Law, law_family
 from cardume.signals import Command, Reference, VesselState, Water
@@ -47,17 +45,8 @@ def variant_of(model: Law, **defaults: float) -> Callable[[Callable[[], None]], 
 
     def make(described: Callable[[], None]) -> Law:
         old = model.function
-<<<<<<< HEAD
         new = FunctionType(old.__code__, old.__globals__, described.__name__, old.__defaults__, old.__closure__)
         new.__annotations__ = old.__annotations__
-=======
-        new = _with_defaults(old, defaults, described.__name__)
-        for name, hint in get_type_hints(old, include_extras=True).items():
-            for note in getattr(hint, "__metadata__", ()):
-                if hasattr(note, "function"):  # what is made of the parameters once, before a mission
-                    once = type(note)(_with_defaults(note.function, defaults, f"{described.__name__}_{name}"))
-                    new.__annotations__[name] = Annotated[hint.__origin__, once]
->>>>>>> 161e4e7 (cardume calibrate: thruster speed to surge, drag and current from a log or a table, with intervals; DVL with (32)'s disturbances and bottom track; rows G and I flown)
         new.__module__, new.__qualname__ = described.__module__, described.__qualname__
         head, _, source = (described.__doc__ or "").partition("    Source:")
         new.__doc__ = f"{head}    Args:{_arguments_in(model.doc_of_parameters)}    Source:{source}"
@@ -68,17 +57,6 @@ def variant_of(model: Law, **defaults: float) -> Callable[[Callable[[], None]], 
     return make
 
 
-<<<<<<< HEAD
 def _arguments_in(doc: str) -> str:
     """What a docstring says of arguments and results."""
     return doc.partition("    Args:")[2].partition("    Source:")[0].rstrip() + "\n\n"
-=======
-def _with_defaults(function: Any, defaults: dict[str, float], name: str) -> FunctionType:
-    """The same code under another name, with other defaults where it has parameters of these names."""
-    given = [p for p in signature(function).parameters.values() if p.default is not p.empty]
-    values = tuple(defaults.get(p.name, p.default) for p in given)
-    new = FunctionType(function.__code__, function.__globals__, name, values, function.__closure__)
-    new.__annotations__ = dict(function.__annotations__)
-    new.__doc__ = function.__doc__
-    return new
->>>>>>> 161e4e7 (cardume calibrate: thruster speed to surge, drag and current from a log or a table, with intervals; DVL with (32)'s disturbances and bottom track; rows G and I flown)
