@@ -169,3 +169,21 @@ def test_a_large_fleet_shows_its_worst(stage: Stage, cardume: Cardume) -> None:
     assert len(rows) == 20
     assert "v33" in rows
     assert "20 vehicles with smaller errors are not shown" in flowing(out)
+
+
+def test_without_the_library_of_the_report_it_says_so_in_a_line(
+    stage: Stage, cardume: Cardume, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from cardume.report.page import page
+    from cardume.report.page.page import LibraryMissing
+
+    def missing() -> str:
+        raise LibraryMissing("report.html needs plotly: pip install 'cardume[report]'")
+
+    monkeypatch.setattr(page, "library", missing)
+    code, out, err = cardume("run", "paper/figure-5")
+    assert (code, err) == (0, "\nnote: report.html needs plotly: pip install 'cardume[report]'\n")
+    assert set(os.listdir("runs/figure-5/001")) == FILES - {"report.html"}
+    assert "report.html" not in out
+    assert cardume("run", "paper/figure-5", "-q") == Result(0, "", "")
+    assert cardume("report", "runs/figure-5/001").code == 2

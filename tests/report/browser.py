@@ -37,8 +37,13 @@ class Page:
         scheme = {"name": "prefers-color-scheme", "value": "dark" if is_dark else "light"}
         self.say("Emulation.setEmulatedMedia", features=[scheme])
         self.resize(width, height)
-        self.driver.get(path.resolve().as_uri())
-        self.wait("document.body.dataset.ready === 'yes'")
+        self.go(path.resolve().as_uri())
+
+    def go(self, address: str) -> None:
+        """Show a page and wait for it; a busy machine takes its time to draw."""
+        self.run("window.is_old = true")
+        self.driver.get(address)
+        self.wait("!window.is_old && document.body && document.body.dataset.ready === 'yes'", 300.0)
 
     def resize(self, width: int, height: int) -> None:
         """Give the window another inner size."""
@@ -59,7 +64,7 @@ class Page:
         """What a script in the page returns."""
         return self.driver.execute_script(script, *given)
 
-    def wait(self, condition: str, seconds: float = 60.0) -> None:
+    def wait(self, condition: str, seconds: float = 120.0) -> None:
         """Until a condition holds in the page."""
         from selenium.webdriver.support.ui import WebDriverWait
 
@@ -100,6 +105,7 @@ def browser() -> Iterator[Page]:
 
     options = webdriver.ChromeOptions()
     options.binary_location = CHROMIUM or ""
+    options.page_load_strategy = "none"  # `go` waits by itself, and longer
     for switch in SWITCHES:
         options.add_argument(switch)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})

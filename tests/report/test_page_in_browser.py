@@ -16,8 +16,9 @@ from report.synthetic import make_flight
 pytestmark = [
     pytest.mark.skipif(bool(LACKING), reason=LACKING),
     pytest.mark.slow,
-    pytest.mark.timeout(600),  # drawing in three dimensions without a graphics card, beside other tests
+    pytest.mark.timeout(900),  # drawing in three dimensions without a graphics card, beside other tests
 ]
+PICTURES = Path(__file__).parents[2] / ".cache" / "pictures"
 FLIGHT = make_flight()
 NOW = (
     "return [...document.getElementById('now').tBodies[0].rows].map(r => [...r.cells].slice(1).map(c => c.textContent))"
@@ -180,8 +181,7 @@ def test_hostile_names_are_shown_and_not_run(page: Page, tmp_path: Path) -> None
     assert HOSTILE[0] in legend
     assert page.run("return document.querySelectorAll('svg a, svg image').length") == 0
     assert [text for text in page.complaints() if "willReadFrequently" not in text] == []
-    page.driver.get(current)
-    page.wait("document.body.dataset.ready === 'yes'")
+    page.go(current)
 
 
 @pytest.mark.parametrize(("width", "height", "is_dark"), [(1280, 800, False), (390, 844, False), (1280, 800, True)])
@@ -190,8 +190,10 @@ def test_it_fits_the_screen(page: Page, tmp_path: Path, width: int, height: int,
     write_page(path, make_run(FLIGHT))
     page.open(path, width, height, is_dark)
     assert page.run("return document.documentElement.scrollWidth <= window.innerWidth")
-    page.picture(tmp_path / "screen.png")
-    assert (tmp_path / "screen.png").stat().st_size > 20_000
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    picture = PICTURES / f"report-{width}x{height}{'-dark' if is_dark else ''}.png"  # kept, for people to look at
+    page.picture(picture)
+    assert picture.stat().st_size > 20_000
     back = page.run("return getComputedStyle(document.body).backgroundColor")
     levels = [int(level) for level in re.findall(r"\d+", back)[:3]]
     assert (max(levels) < 64) == is_dark
