@@ -110,6 +110,8 @@ def browser() -> Iterator[Page]:
         options.add_argument(switch)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=Service(DRIVER))
+    driver.set_script_timeout(300)
+    driver.command_executor.client_config.timeout = 330
     try:
         yield Page(driver)
     finally:

@@ -227,7 +227,10 @@
 
   const begin = async () => {
     if (!times.length) return;
-    for (const id of ["plan", "space", "series"]) await draw(id);
+    for (const id of ["plan", "space", "series"]) {
+      await draw(id);
+      await new Promise((goOn) => setTimeout(goOn)); // what is drawn is seen before the next begins
+    }
     slider.max = last;
     slider.step = record;
     const usual = last / 45; // about as many seconds of playing
