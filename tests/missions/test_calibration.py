@@ -257,8 +257,7 @@ def test_a_log_tells_how_much_stronger_the_thrusters_are(tmp_path: Path) -> None
     (track_of_log,) = read_tracks(tmp_path / "log.nc")
     found = calibrate(track_of_log)
     assert found.num_legs >= 6
-    assert found.scale.value == pytest.approx(math.sqrt(1.3), rel=0.01)
-    assert found.scale.holds(math.sqrt(1.3))
+    assert found.scale.value == pytest.approx(math.sqrt(1.3), rel=0.005)  # what the hull adds to the noise
     assert found.current_north is not None
     assert found.current_north.value == pytest.approx(0.05, abs=0.01)
 

@@ -18,7 +18,11 @@ FEW_LEGS = 4
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """A value and the half width of its 95 % interval."""
+    """A value and the half width of its 95 % interval.
+
+    The interval is that of noise. What (37) leaves out, the sway and the accelerations of a vehicle that wanders about
+    its path, comes on top: 0.1 to 1 % of the scale in flights of `medusa` with noisy fixes.
+    """
 
     value: float
     half_width: float

@@ -11,8 +11,8 @@ import numpy as np
 from cardume.missions.calibration.track import Track
 
 WINDOW = 10.0  # [s] over which steadiness is judged
-MOST_TURN = math.radians(0.5)  # [rad/s]
-MOST_CHANGE = 0.05  # [-] of the mean shaft speed from one half of the window to the other
+MOST_TURN = math.radians(1.5)  # [rad/s] noisy fixes make a heading wander by 1 deg/s; an arc of 12 m at 0.5 m/s is 2.4
+MOST_CHANGE = 0.1  # [-] of the mean shaft speed from one half of the window to the other
 SLOWEST = 0.05  # of the fastest shaft speed of the track: slower counts as standing
 SETTLING = 5.0  # [s] left out after a change
 SHORTEST = 15.0  # [s]
