@@ -70,7 +70,7 @@ def test_any_flight_can_be_drawn_without_a_murmur(name: str, width: float, caplo
     assert caplog.records == []
 
 
-@pytest.mark.parametrize("figure", set(FIGURES) - {"plan", "errors"})
+@pytest.mark.parametrize("figure", sorted(set(FIGURES) - {"plan", "errors"}))
 @pytest.mark.parametrize("name", ["no rows", "lost halfway", "all lost", "standing still", "alone"])
 def test_any_figure_can_be_drawn_without_a_murmur(figure: str, name: str, caplog: pytest.LogCaptureFixture) -> None:
     with warnings.catch_warnings():
