@@ -27,6 +27,13 @@ class Layout:
             self.offsets[record] = self.width
             self.width += len(record._fields)
 
+    def lay_over(self, record: type[Any], first: str, *parts: type[Any]) -> None:
+        """Let records stand for some of the numbers of another, one after the other from a field of it on."""
+        offset = self.column(record, first)
+        for part in parts:
+            self.offsets[part] = offset
+            offset += len(part._fields)
+
     def reader(self, record: type[Any]) -> Callable[..., Any]:
         """A function (table, owner) -> record."""
         width, start, size = self.width, self.offsets[record], len(record._fields)

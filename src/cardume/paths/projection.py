@@ -273,14 +273,17 @@ def _point_along(path: Rows, segment: float, s: float) -> PointAhead:
     """The point s [m] from the start of a line or an arc."""
     c = segment_value(path, segment, CURVATURE)
     sin_start, cos_start = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
-    # 1 - cos loses digits where an arc is nearly straight: half angles
-    turned = wrap_angle(c * s)
-    sin_half, cos_half = sincos(0.5 * turned)
     curved = c != 0.0
-    diameter = 2.0 / where(curved, c, 1.0)
-    x = where(curved, diameter * sin_half * cos_half, s)
-    y = where(curved, diameter * sin_half * sin_half, 0.0)
-    sin_turned, cos_turned = 2.0 * sin_half * cos_half, 1.0 - 2.0 * sin_half * sin_half
+    x, y, turned = s, 0.0 * s, c * s
+    sin_turned, cos_turned = 0.0 * s, 1.0 + 0.0 * s
+    if some(curved):
+        # 1 - cos loses digits where an arc is nearly straight: half angles
+        turned = wrap_angle(turned)
+        sin_half, cos_half = sincos(0.5 * turned)
+        diameter = 2.0 / where(curved, c, 1.0)
+        x = where(curved, diameter * sin_half * cos_half, s)
+        y = where(curved, diameter * sin_half * sin_half, 0.0)
+        sin_turned, cos_turned = 2.0 * sin_half * cos_half, 1.0 - 2.0 * sin_half * sin_half
     return PointAhead(
         segment_value(path, segment, START_NORTH) + x * cos_start - y * sin_start,
         segment_value(path, segment, START_EAST) + x * sin_start + y * cos_start,

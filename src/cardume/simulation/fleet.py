@@ -13,7 +13,7 @@ from cardume.laws import COLUMNS, FAMILIES, LawBook
 from cardume.maths.random import Key
 from cardume.onboard.mind import NUM_FEATURES, ORDERS_START, OTHERS_WIDTH, OWN_WIDTH, Mind
 from cardume.paths.table import PathPlace
-from cardume.signals import Command, Measured, Reference, VesselState, Water
+from cardume.signals import AhrsReading, Command, DvlReading, Measured, Reference, ShaftReading, VesselState, Water
 
 HANDLES = len(FAMILIES) * COLUMNS
 
@@ -22,10 +22,17 @@ class Timing(NamedTuple):
     """When a sensor samples; an absent one never does."""
 
     next_sample: float = np.inf  # [ticks] when the next reading is delivered
+    sample: float = 0.0  # [-] readings so far
     period: float = 1.0  # [ticks]
     latency: float = 0.0  # [ticks]
     is_noisy: float = 1.0  # [-] 0: its law asks for no noise
-    sample: float = 0.0  # [-] readings so far
+
+
+class Due(NamedTuple):
+    """What of a timing changes with every reading."""
+
+    next_sample: float  # [ticks]
+    sample: float  # [-]
 
 
 class OnPath(NamedTuple):
@@ -53,6 +60,18 @@ class Held(NamedTuple):
     altitude: float = np.nan  # [m]
 
 
+class DepthReading(NamedTuple):
+    """What of it the depth sensor says."""
+
+    depth: float  # [m]
+
+
+class AltimeterReading(NamedTuple):
+    """What of it the altimeter says."""
+
+    altitude: float  # [m]
+
+
 class Satellite(NamedTuple):
     """The GNSS reading of this tick."""
 
@@ -68,14 +87,21 @@ get_reference, put_reference = VEHICLE.reader(Reference), VEHICLE.writer(Referen
 get_command, put_command = VEHICLE.reader(Command), VEHICLE.writer(Command)
 get_true_place, put_true_place = VEHICLE.reader(PathPlace), VEHICLE.writer(PathPlace)
 get_on_path, put_on_path = VEHICLE.reader(OnPath), VEHICLE.writer(OnPath)
-get_held, put_held = VEHICLE.reader(Held), VEHICLE.writer(Held)
+VEHICLE.lay_over(Held, "heading", AhrsReading, DepthReading, ShaftReading, DvlReading, AltimeterReading)
+get_held = VEHICLE.reader(Held)
+get_attitude, put_attitude = VEHICLE.reader(AhrsReading), VEHICLE.writer(AhrsReading)
+get_depth, put_depth = VEHICLE.reader(DepthReading), VEHICLE.writer(DepthReading)
+get_shaft, put_shaft = VEHICLE.reader(ShaftReading), VEHICLE.writer(ShaftReading)
+get_velocity, put_velocity = VEHICLE.reader(DvlReading), VEHICLE.writer(DvlReading)
+get_altitude, put_altitude = VEHICLE.reader(AltimeterReading), VEHICLE.writer(AltimeterReading)
 get_satellite, put_satellite = VEHICLE.reader(Satellite), VEHICLE.writer(Satellite)
 
 SENSORS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed", "altimeter")
 STREAMS = (*SENSORS, "link")  # each with its own random numbers
 NUM_SENSORS, NUM_STREAMS = len(SENSORS), len(STREAMS)
 TIMING, KEY = Layout(Timing), Layout(Key)
-get_timing, put_timing = TIMING.reader(Timing), TIMING.writer(Timing)
+TIMING.lay_over(Timing, "next_sample", Due)
+get_timing, put_due = TIMING.reader(Timing), TIMING.writer(Due)
 get_key, put_key = KEY.reader(Key), KEY.writer(Key)
 
 SEEN = Layout(VesselState, Water)  # what a sensor with a latency looks back at

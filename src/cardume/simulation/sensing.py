@@ -7,7 +7,6 @@ from cardume.onboard.mind import get_setup
 from cardume.onboard.neighborhood import USBL_WIDTH
 from cardume.signals import (
     NOTHING,
-    AhrsReading,
     Baseline,
     DvlReading,
     GnssReading,
@@ -15,6 +14,7 @@ from cardume.signals import (
     Noise,
     Sampling,
     Seabed,
+    ShaftReading,
     Spot,
     VesselState,
     Water,
@@ -25,20 +25,30 @@ from cardume.simulation.fleet import (
     SEEN,
     SENSORS,
     STREAMS,
+    AltimeterReading,
+    DepthReading,
+    Due,
     Fleet,
-    Held,
     Satellite,
     Timing,
     book_of,
-    get_held,
+    get_altitude,
+    get_attitude,
+    get_depth,
     get_key,
+    get_shaft,
     get_timing,
+    get_velocity,
     get_vessel,
     get_water,
     measured_of,
-    put_held,
+    put_altitude,
+    put_attitude,
+    put_depth,
+    put_due,
     put_satellite,
-    put_timing,
+    put_shaft,
+    put_velocity,
 )
 from cardume.simulation.noise import NOISE_WIDTH, noise_of_reading
 from cardume.world.bathymetry import sound
@@ -62,12 +72,11 @@ put_past_water, pick_past_water = SEEN.writer(Water), SEEN.picker(Water)
 def sense(fleet: Fleet, vehicle: int, now: int) -> Measured:
     """Let every sensor of a vehicle that is due read, and return what all of them say now."""
     remember(fleet, vehicle, now)
-    held = get_held(fleet.vehicles, vehicle)
-    held = sense_attitude(fleet, vehicle, now, held)
-    held = sense_depth(fleet, vehicle, now, held)
-    held = sense_shaft(fleet, vehicle, now, held)
-    held = sense_altitude(fleet, vehicle, now, held)
-    put_held(fleet.vehicles, vehicle, sense_velocity(fleet, vehicle, now, held))
+    sense_attitude(fleet, vehicle, now)
+    sense_depth(fleet, vehicle, now)
+    sense_shaft(fleet, vehicle, now)
+    sense_altitude(fleet, vehicle, now)
+    sense_velocity(fleet, vehicle, now)
     sense_position(fleet, vehicle, now)
     sense_others(fleet, vehicle, now)
     return measured_of(fleet, vehicle)
@@ -91,10 +100,8 @@ def timing_of(fleet: Fleet, vehicle: int, sensor: int) -> Timing:
 @compiled
 def schedule_next(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, due: bool) -> None:
     """After a reading, set when the next one is delivered."""
-    sample = where(due, timing.sample + 1.0, timing.sample)
-    following = where(due, timing.next_sample + timing.period, timing.next_sample)
-    after = Timing(following, timing.period, timing.latency, timing.is_noisy, sample)
-    put_timing(fleet.timings, vehicle * NUM_SENSORS + sensor, after)
+    before, after = Due(timing.next_sample, timing.sample), Due(timing.next_sample + timing.period, timing.sample + 1.0)
+    put_due(fleet.timings, vehicle * NUM_SENSORS + sensor, where(due, after, before))
 
 
 @compiled
@@ -146,7 +153,7 @@ def sampling_of(fleet: Fleet, timing: Timing, now: int) -> Sampling:
 
 
 @compiled
-def sense_attitude(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+def sense_attitude(fleet: Fleet, vehicle: int, now: int) -> None:
     """Heading, yaw rate, roll and pitch by AHRS."""
     timing = timing_of(fleet, vehicle, AHRS)
     due = timing.next_sample <= now
@@ -159,28 +166,12 @@ def sense_attitude(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
             noise_of(fleet, vehicle, AHRS, timing, now),
             sampling_of(fleet, timing, now),
         )
-        held = where(due, _with_attitude(held, reading), held)
+        put_attitude(fleet.vehicles, vehicle, where(due, reading, get_attitude(fleet.vehicles, vehicle)))
         schedule_next(fleet, vehicle, AHRS, timing, due)
-    return held
 
 
 @compiled
-def _with_attitude(held: Held, reading: AhrsReading) -> Held:
-    return Held(
-        reading.heading,
-        reading.yaw_rate,
-        reading.roll,
-        reading.pitch,
-        held.depth,
-        held.shaft_speed,
-        held.dvl_surge,
-        held.dvl_sway,
-        held.altitude,
-    )
-
-
-@compiled
-def sense_depth(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+def sense_depth(fleet: Fleet, vehicle: int, now: int) -> None:
     """Depth by pressure."""
     timing = timing_of(fleet, vehicle, DEPTH)
     due = timing.next_sample <= now
@@ -193,28 +184,12 @@ def sense_depth(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
             noise_of(fleet, vehicle, DEPTH, timing, now),
             sampling_of(fleet, timing, now),
         )
-        held = where(due, _with_depth(held, depth), held)
+        put_depth(fleet.vehicles, vehicle, where(due, DepthReading(depth), get_depth(fleet.vehicles, vehicle)))
         schedule_next(fleet, vehicle, DEPTH, timing, due)
-    return held
 
 
 @compiled
-def _with_depth(held: Held, depth: float) -> Held:
-    return Held(
-        held.heading,
-        held.yaw_rate,
-        held.roll,
-        held.pitch,
-        depth,
-        held.shaft_speed,
-        held.dvl_surge,
-        held.dvl_sway,
-        held.altitude,
-    )
-
-
-@compiled
-def sense_shaft(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+def sense_shaft(fleet: Fleet, vehicle: int, now: int) -> None:
     """Speed of the thrusters' shafts."""
     timing = timing_of(fleet, vehicle, THRUSTER_SPEED)
     due = timing.next_sample <= now
@@ -227,13 +202,12 @@ def sense_shaft(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
             noise_of(fleet, vehicle, THRUSTER_SPEED, timing, now),
             sampling_of(fleet, timing, now),
         )
-        held = where(due, _with_speeds(held, shaft_speed, held.dvl_surge, held.dvl_sway), held)
+        put_shaft(fleet.vehicles, vehicle, where(due, ShaftReading(shaft_speed), get_shaft(fleet.vehicles, vehicle)))
         schedule_next(fleet, vehicle, THRUSTER_SPEED, timing, due)
-    return held
 
 
 @compiled
-def sense_altitude(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+def sense_altitude(fleet: Fleet, vehicle: int, now: int) -> None:
     """Altitude above the seabed by sound, where there is a seabed; NaN without an echo."""
     if fleet.has_seabed > 0:
         timing = timing_of(fleet, vehicle, ALTIMETER)
@@ -248,24 +222,9 @@ def sense_altitude(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
                 noise_of(fleet, vehicle, ALTIMETER, timing, now),
                 sampling_of(fleet, timing, now),
             )
-            held = where(due, _with_altitude(held, altitude), held)
+            reading = AltimeterReading(altitude)
+            put_altitude(fleet.vehicles, vehicle, where(due, reading, get_altitude(fleet.vehicles, vehicle)))
             schedule_next(fleet, vehicle, ALTIMETER, timing, due)
-    return held
-
-
-@compiled
-def _with_altitude(held: Held, altitude: float) -> Held:
-    return Held(
-        held.heading,
-        held.yaw_rate,
-        held.roll,
-        held.pitch,
-        held.depth,
-        held.shaft_speed,
-        held.dvl_surge,
-        held.dvl_sway,
-        altitude,
-    )
 
 
 @compiled
@@ -278,7 +237,7 @@ def seabed_below(fleet: Fleet, vehicle: int, vessel: VesselState) -> Seabed:
 
 
 @compiled
-def sense_velocity(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
+def sense_velocity(fleet: Fleet, vehicle: int, now: int) -> None:
     """Velocity through the water, or over ground, by DVL."""
     timing = timing_of(fleet, vehicle, DVL)
     due = timing.next_sample <= now
@@ -293,24 +252,8 @@ def sense_velocity(fleet: Fleet, vehicle: int, now: int, held: Held) -> Held:
             sampling_of(fleet, timing, now),
             seabed_below(fleet, vehicle, then),
         )
-        held = where(due, _with_speeds(held, held.shaft_speed, reading.surge, reading.sway), held)
+        put_velocity(fleet.vehicles, vehicle, where(due, reading, get_velocity(fleet.vehicles, vehicle)))
         schedule_next(fleet, vehicle, DVL, timing, due)
-    return held
-
-
-@compiled
-def _with_speeds(held: Held, shaft_speed: float, surge: float, sway: float) -> Held:
-    return Held(
-        held.heading,
-        held.yaw_rate,
-        held.roll,
-        held.pitch,
-        held.depth,
-        shaft_speed,
-        surge,
-        sway,
-        held.altitude,
-    )
 
 
 @compiled

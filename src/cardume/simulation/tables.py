@@ -219,7 +219,7 @@ def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
             choice = vehicle.laws[sensor]
             latency = float(round(choice.value("latency") / tick))
             period = float(max(1, round(choice.value("period") / tick)))
-            timing = Timing(latency, period, latency, float(_is_noisy(choice)))
+            timing = Timing(latency, 0.0, period, latency, float(_is_noisy(choice)))
         row.append(_row(TIMING, timing))
     return np.concatenate(row)
 
