@@ -61,6 +61,7 @@ def rabbit_of_27(
         error.arc_length,
         error.finished,
         error.speed,
+        error.path_speed,
         error.path,
     )
     return told, Rabbit(target + dt * rate, 1.0)

@@ -262,7 +262,9 @@ def test_rotating_and_shifting_the_scene_changes_only_the_course(scene, north: f
         first.course + turn,
     )
     one, other = compare(reference, chain(start, reference), offset, offset, gamma, e, e)
-    assert one[1:-1] == pytest.approx(other[1:-1], abs=1e-9)
+    at_the_end = abs(one.arc_length - one.path[LENGTH_OWN]) < 1e-9  # there rounding says which side of it
+    for name in set(PathError._fields) - {"path_course", "path"} - ({"finished"} if at_the_end else set()):
+        assert getattr(one, name) == pytest.approx(getattr(other, name), abs=1e-9, nan_ok=True), name
     assert angle_between(one.path_course + turn, other.path_course) < 1e-9
 
 
@@ -274,7 +276,8 @@ def test_mirroring_the_scene_changes_only_the_signs(scene) -> None:
         for s in reference
     )
     one, other = compare(reference, mirrored, offset, -offset, gamma, e, -e)
-    for name in ("path_parameter", "arc_length", "stretch", "finished"):
+    at_the_end = abs(one.arc_length - one.path[LENGTH_OWN]) < 1e-9  # there rounding says which side of it
+    for name in ("path_parameter", "arc_length", "stretch", *(() if at_the_end else ("finished",))):
         assert getattr(one, name) == pytest.approx(getattr(other, name), abs=1e-9)
     for name in ("cross_track", "curvature"):
         assert getattr(one, name) == pytest.approx(-getattr(other, name), abs=1e-9)
@@ -327,5 +330,7 @@ def test_the_speed_is_that_of_the_place_where_the_formation_is() -> None:
 
 def test_the_law_is_the_projection() -> None:
     path = offset_path(lawnmower(Start(), 30.0, 2, 24.0), 2.0, speed=0.5)
-    assert projection(Place(40.0, 5.0, path), PathPlace()) == project(Place(40.0, 5.0, path), PathPlace())
+    law, function = (found(Place(40.0, 5.0, path), PathPlace()) for found in (projection, project))
+    assert law[0][:-1] == pytest.approx(function[0][:-1], rel=0.0, abs=0.0, nan_ok=True)
+    assert law[1] == function[1]
     assert projection.parameters == ()

@@ -34,6 +34,8 @@ current: {type: uniform, speed: 0.08 m/s, towards: 60 deg, variation_sigma: 0.02
 model: medusa
 swath: 3 m
 transient: {threshold: 0.6 m, hold: 8 s}
+bathymetry: {type: flat, depth: 30 m}
+limits: {depth: 20 m, geofence: {radius: 500 m}}
 compensation: {law: crab}
 current_observer: {law: complementary}
 position: {law: reset_compensated}
