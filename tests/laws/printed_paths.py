@@ -3,20 +3,23 @@
 from typing import NamedTuple
 
 from cardume.compiler import load, where
-from cardume.laws import Number
+from cardume.laws import Number, PerSecond, Seconds
 from cardume.maths import atan2, sincos
 from cardume.paths.base import reference_point_law
 from cardume.paths.projection import project
 from cardume.paths.table import (
     CENTER_EAST,
     CENTER_NORTH,
+    COS_COURSE,
     HEADER_WIDTH,
     RADIUS,
+    SIN_COURSE,
     START_EAST,
     START_NORTH,
     PathPlace,
 )
-from cardume.signals import PathError, Place
+from cardume.paths.virtual_target import run_along
+from cardume.signals import Motion, PathError, Place
 
 
 class Odometer(NamedTuple):
@@ -81,6 +84,33 @@ def polar_of_51_and_52(
     rho = load(path, HEADER_WIDTH + RADIUS) - where(error.curvature > 0.0, error.cross_track, -error.cross_track)
     e = error.cross_track + without_radius * (rho - error.cross_track)
     return _told(error, e, error.path_parameter + in_radians * (turned - error.path_parameter)), after
+
+
+@reference_point_law
+def virtual_target_of_27(
+    place: Place, motion: Motion, memory: PathPlace, dt: Seconds, target_gain: PerSecond = 0.5
+) -> tuple[PathError, PathPlace]:
+    """The virtual target by (27) to the letter, where chi is the heading: it never looks at the path's course.
+
+    s' = u cos(psi - psi) + k2 s1 = u + k2 s1
+
+    Args:
+        place: position and path, a line.
+        motion: of the vehicle.
+        memory: the target's place.
+        dt: [s] tick.
+        target_gain: [1/s] k2.
+
+    Returns:
+        The path error and the target's next place.
+
+    Source: paper eq. (27) as printed.
+    """
+    sine, cosine = load(place.path, HEADER_WIDTH + SIN_COURSE), load(place.path, HEADER_WIDTH + COS_COURSE)
+    along = Motion(
+        motion.heading, motion.yaw_rate, motion.surge, 0.0, motion.surge * cosine, motion.surge * sine, 0.0, 0.0
+    )
+    return run_along(place, along, memory, dt, target_gain, 0.0)
 
 
 def _told(error: PathError, cross_track: float, path_parameter: float) -> PathError:

@@ -29,6 +29,22 @@ MISSIONS = {
         "path={type: segments, segments: [{line: 3, speed: 1}, {arc: 9, angle: 1, speed: 1}]}",
         "guidance.reference_point=virtual_target",
     ),
+    "clothoids": (
+        SMALLEST,
+        "path={type: segments, segments: [{line: 3}, {clothoid: 9, radius: 12, speed: 1}, {clothoid: 4, radius: 9}]}",
+    ),
+    "waypoints": (
+        SMALLEST,
+        "path={type: waypoints, points: [{north: 0, east: 0}, {north: 9, east: 0}], turn_radius: 2}",
+    ),
+    "spline": (
+        SMALLEST,
+        "path={type: spline, points: [{north: 0, east: 0}, {north: 9, east: 0}, {north: 9, east: 9}], shape: closed}",
+    ),
+    "lemniscate": (
+        SMALLEST,
+        "path={type: lemniscate, centre: {north: 1, east: 2}, half_width: 9, parameter_rate: 0.1, laps: 2}",
+    ),
     "file": (SMALLEST, "path={type: file, file: helpers.py}"),
     "orders": (
         SMALLEST,
@@ -47,6 +63,10 @@ REPEATED = {
     "arc": ("path", "current"),
     "file": ("path",),
     "orders": ("phases", "limits", "abort", "bathymetry"),
+    "clothoids": ("path",),
+    "waypoints": ("path",),
+    "spline": ("path",),
+    "lemniscate": ("path",),
 }
 
 

@@ -8,15 +8,21 @@ from numba import config, njit
 
 from cardume.compiler import WIDTH, load, rows_of, store
 from cardume.paths.along import arc_length_at, path_parameter_at
+from cardume.paths.circle import Center
 from cardume.paths.lawnmower import lawnmower
+from cardume.paths.lemniscate import lemniscate
 from cardume.paths.offset import offset_path
 from cardume.paths.projection import point_at, project, projection
 from cardume.paths.segment import Start
 from cardume.paths.table import LENGTH_OWN, PathPlace
+from cardume.paths.virtual_target import virtual_target
 from cardume.signals import Place
 
 NUM_OUT = 10
-PATH = offset_path(lawnmower(Start(1.0, 2.0, 0.3), 30.0, 3, 24.0), -3.0, -2.0, 0.5)
+PATHS = {
+    "lines and arcs": offset_path(lawnmower(Start(1.0, 2.0, 0.3), 30.0, 3, 24.0), -3.0, -2.0, 0.5),
+    "curves": offset_path(lemniscate(Center(1.0, 2.0), 20.0, 0.3, parameter_rate=0.02), -3.0, -2.0, 0.5),
+}
 
 
 def fly(path: np.ndarray, places: np.ndarray, seen: np.ndarray, memory: np.ndarray, num_places: int) -> None:
@@ -40,10 +46,10 @@ def fly(path: np.ndarray, places: np.ndarray, seen: np.ndarray, memory: np.ndarr
         store(out, NUM_OUT * k + 9, path_parameter_at(table, error.arc_length))
 
 
-def missions() -> np.ndarray:
+def missions(path: np.ndarray) -> np.ndarray:
     """(places, 2, WIDTH): eight vehicles along the path, each with its own error and its own start."""
-    s = np.linspace(-10.0, PATH[LENGTH_OWN] + 10.0, 120)
-    points = np.array([point_at(PATH, x) for x in s])
+    s = np.linspace(-10.0, path[LENGTH_OWN] + 10.0, 120)
+    points = np.array([point_at(path, x) for x in s])
     errors = np.array([[(lane - 3.0) * math.sin(x / 9.0 + lane) for lane in range(WIDTH)] for x in s])
     north = points[:, :1] - errors * points[:, 3:4]
     east = points[:, 1:2] + errors * points[:, 4:5]
@@ -51,25 +57,29 @@ def missions() -> np.ndarray:
     return np.stack(rolled, axis=-1)
 
 
+compiled = njit(nogil=True, error_model="numpy")(fly)
+
+
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="compares compiled code with plain Python")
-def test_python_one_mission_and_lanes_agree_to_the_last_bit() -> None:
-    compiled = njit(nogil=True, error_model="numpy")(fly)
-    places = missions()
+@pytest.mark.parametrize("kind", PATHS)
+def test_python_one_mission_and_lanes_agree_to_the_last_bit(kind: str) -> None:
+    path, places = PATHS[kind], missions(PATHS[kind])
     count = len(places)
     lanes = np.zeros((count * NUM_OUT, WIDTH))
-    wide = np.ascontiguousarray(np.repeat(PATH[:, None], WIDTH, axis=1))
+    wide = np.ascontiguousarray(np.repeat(path[:, None], WIDTH, axis=1))
     compiled(wide, np.ascontiguousarray(places.reshape(-1, WIDTH)), lanes, np.zeros((2, WIDTH)), count)
     assert np.isfinite(lanes).all()
     for lane in range(WIDTH):
         own, one = np.ascontiguousarray(places[:, :, lane]).ravel(), np.zeros(count * NUM_OUT)
-        compiled(PATH, own, one, np.zeros(2), count)
+        compiled(path, own, one, np.zeros(2), count)
         assert np.array_equal(one, lanes[:, lane])
     plain = np.zeros(count * NUM_OUT)
-    fly(PATH, own, plain, np.zeros(2), count)
+    fly(path, own, plain, np.zeros(2), count)
     assert np.array_equal(one, plain)
 
 
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="compiles the law")
-def test_the_law_compiles_for_one_mission_and_for_lanes() -> None:
-    assert projection.handle() > 0
-    assert projection.handle(lanes=True) > 0
+def test_the_laws_compile_for_one_mission_and_for_lanes() -> None:
+    for law in (projection, virtual_target):
+        assert law.handle() > 0
+        assert law.handle(lanes=True) > 0

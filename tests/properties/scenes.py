@@ -124,6 +124,18 @@ class Scene:
         if self.shape == "segments":
             arc = f"{{arc: 11.3 m, turn: {turn_word}, angle: 1.1 rad}}"
             return f"{{type: segments, {start}, segments: [{{line: 17.3 m}}, {arc}, {{line: 80.1 m}}]}}"
+        if self.shape == "lemniscate":
+            # the path starts at the first tip, across the axis
+            axis = self.course - self.side * 0.5 * math.pi
+            north, east = turn(-25.7, 0.0, axis)
+            centre = f"centre: {{north: {self.north + north!r} m, east: {self.east + east!r} m}}"
+            return f"{{type: lemniscate, {centre}, half_width: 25.7 m, axis: {axis!r} rad, turn: {turn_word}}}"
+        if self.shape == "spline":
+            places = [
+                turn(n, self.side * e, self.course) for n, e in ((0.0, 0.0), (21.3, 9.7), (43.1, -8.9), (90.3, 4.1))
+            ]
+            points = ", ".join(f"{{north: {self.north + n!r}, east: {self.east + e!r}}}" for n, e in places)
+            return f"{{type: spline, points: [{points}]}}"
         return f"{{type: lawnmower, {start}, leg: 23.7 m, legs: 3, spacing: 21.9 m, turn: {turn_word}}}"
 
     def _member(self, m: Member) -> str:

@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from cardume.missions.catalog import Catalog
 from cardume.missions.currents import Window, explain_coverage, read_current
 from cardume.missions.formats import read_plan
 from cardume.missions.geodesy import GeoPoint
+from cardume.missions.laying import lay_path
 from cardume.missions.mission import Mission
 from cardume.missions.orders import (
     deepest,
@@ -26,21 +27,15 @@ from cardume.missions.orders import (
     start_depth,
     table_speed,
 )
-from cardume.missions.route import ArcPath, CirclePath, FilePath, LawnmowerPath, LemniscatePath, LinePath
+from cardume.missions.route import FilePath
 from cardume.missions.seabed import numbers_only, read_seabed
 from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
 from cardume.missions.water import CurrentPoint
 from cardume.onboard.mind import Setup
-from cardume.paths.arc import arc
-from cardume.paths.circle import Center, circle
-from cardume.paths.lawnmower import lawnmower
-from cardume.paths.lemniscate import lemniscate
-from cardume.paths.line import line
 from cardume.paths.offset import offset_path
 from cardume.paths.outline import outline
 from cardume.paths.projection import point_at
-from cardume.paths.segment import GeometryError, ReferencePath, Start, Turn
-from cardume.paths.segments import ArcPiece, LinePiece, segments
+from cardume.paths.segment import GeometryError, ReferencePath
 from cardume.paths.table import PathPlace, start_at
 from cardume.signals import Command, Reference, VesselState, Water
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
@@ -127,38 +122,7 @@ def reference_path(mission: Mission, origin: GeoPoint | None) -> tuple[Reference
     if isinstance(mission.path, FilePath):
         plan = read_plan(Path(mission.path.file), origin)
         return plan.segments, plan.origin
-    return _positioned(mission, "path", lambda: _drawn_path(mission.path)), origin
-
-
-def _drawn_path(path: Any) -> ReferencePath:
-    if isinstance(path, CirclePath):
-        return circle(
-            Center(path.centre.north, path.centre.east), path.radius, cast(Turn, path.turn), path.start_bearing
-        )
-    if isinstance(path, LemniscatePath):
-        return lemniscate(
-            Center(path.centre.north, path.centre.east),
-            path.half_width,
-            path.axis,
-            cast(Turn, path.turn),
-            start_parameter=path.start_parameter,
-            parameter_rate=path.parameter_rate,
-            laps=path.laps,
-        )
-    start = Start(path.start.north, path.start.east, path.start.course)
-    if isinstance(path, LinePath):
-        return line(start, path.length)
-    if isinstance(path, ArcPath):
-        return arc(start, path.radius, cast(Turn, path.turn), path.angle)
-    if isinstance(path, LawnmowerPath):
-        return lawnmower(start, path.leg, path.legs, path.spacing, cast(Turn, path.turn))
-    pieces = [
-        LinePiece(line=piece.line, speed=piece.speed)
-        if hasattr(piece, "line")
-        else ArcPiece(arc=piece.arc, turn=piece.turn, angle=piece.angle, speed=piece.speed)
-        for piece in path.segments
-    ]
-    return segments(start, pieces)
+    return _positioned(mission, "path", lambda: lay_path(mission.path)), origin
 
 
 def _own_path(mission: Mission, vehicle: Vehicle, reference: ReferencePath, speed: float) -> np.ndarray:

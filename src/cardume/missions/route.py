@@ -91,15 +91,43 @@ class ArcSegment:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ClothoidSegment:
+    """A piece whose curvature changes evenly, from that of the piece before; without a radius it ends straight."""
+
+    clothoid: Annotated[PositiveMeters, "its length"]
+    radius: Annotated[float | None, Quantity("m", POSITIVE), "at its end"] = None
+    turn: Annotated[Turn, "at its end; starboard: clockwise seen from above"] = "starboard"
+    speed: Annotated[SpeedOrNone, "along it, instead of the formation's"] = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SegmentsPath:
-    """Lines and arcs, each continuing where the one before ends."""
+    """Lines, arcs and clothoids, each continuing where the one before ends."""
 
     start: Annotated[PathStart, Group(PathStart), "where the first piece begins"] = PathStart()
     segments: Annotated[
-        tuple[LineSegment | ArcSegment, ...],
-        ListOf(Forms((LineSegment, ArcSegment))),
-        "the pieces, each {line: ...} or {arc: ..., turn: ..., angle: ...}",
+        tuple[LineSegment | ArcSegment | ClothoidSegment, ...],
+        ListOf(Forms((LineSegment, ArcSegment, ClothoidSegment))),
+        "the pieces, each {line: ...}, {arc: ..., turn: ..., angle: ...} or {clothoid: ..., radius: ..., turn: ...}",
     ]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WaypointsPath:
+    """Straight legs from point to point."""
+
+    points: Annotated[tuple[Point, ...], ListOf(Group(Point)), "two or more, in the order in which they are passed"]
+    turn_radius: Annotated[float | None, Quantity("m", POSITIVE), "of its turns; without one corners are sharp"] = None
+    joint: Annotated[str, Word(("arc", "clothoid")), "how legs join; a clothoid's curvature does not jump"] = "arc"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SplinePath:
+    """A smooth curve through points, the natural cubic spline."""
+
+    points: Annotated[tuple[Point, ...], ListOf(Group(Point)), "three or more, in the order in which they are passed"]
+    shape: Annotated[str, Word(("open", "closed")), "closed: from the last point back to the first"] = "open"
+    laps: Annotated[int, Whole(1, MOST_LAPS), "how many times round a closed one"] = 1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,7 +158,19 @@ PATHS = {
     "circle": CirclePath,
     "lawnmower": LawnmowerPath,
     "segments": SegmentsPath,
+    "waypoints": WaypointsPath,
+    "spline": SplinePath,
     "lemniscate": LemniscatePath,
     "file": FilePath,
 }
-AnyPath = LinePath | ArcPath | CirclePath | LawnmowerPath | SegmentsPath | LemniscatePath | FilePath
+AnyPath = (
+    LinePath
+    | ArcPath
+    | CirclePath
+    | LawnmowerPath
+    | SegmentsPath
+    | WaypointsPath
+    | SplinePath
+    | LemniscatePath
+    | FilePath
+)

@@ -14,8 +14,20 @@ from numpy.polynomial import chebyshev, polynomial
 
 from cardume.paths.table import DEGREE, PLACE_DEGREE
 
+
+def _powers_of_chebyshev(count: int) -> np.ndarray:
+    """Row k: what multiplies 1, tau, tau^2, ... in Chebyshev's polynomial k of 2 tau - 1; whole numbers, exact."""
+    rows = np.zeros((count, count))
+    rows[0, 0], rows[1, :2] = 1.0, (-1.0, 2.0)
+    for k in range(2, count):
+        rows[k, 1:] = 4.0 * rows[k - 1, :-1]
+        rows[k] -= 2.0 * rows[k - 1] + rows[k - 2]
+    return rows
+
+
 NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)  # of tau; both ends are among them
 BETWEEN = 0.5 * (NODES[1:] + NODES[:-1])  # where a fit is judged
+_TO_POWERS = _powers_of_chebyshev(PLACE_DEGREE + 1)
 _TO_CHEBYSHEV = np.linalg.inv(chebyshev.chebvander(2.0 * NODES - 1.0, DEGREE))
 
 Coefficients = tuple[float, ...]
@@ -86,6 +98,29 @@ class Curve:
             low, high = (tau, high) if short else (low, tau)
         return 0.5 * (low + high) * self.length
 
+    def along(self, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Many points at once.
+
+        Args:
+            tau: [-] (n,) shares of the length.
+
+        Returns:
+            Each (n,): place ahead and to starboard [m], turned angle [rad], curvature [1/m].
+        """
+        ahead, starboard, turned = (
+            polynomial.polyval(tau, [0.0, *c]) for c in (self.ahead, self.starboard, self.turned)
+        )
+        return ahead, starboard, turned, polynomial.polyval(tau, polynomial.polyder([0.0, *self.turned])) / self.length
+
+    def speed_along(self, tau: np.ndarray) -> np.ndarray:
+        """v_L [m/s] (n,), or what it gains where the curve has none of its own.
+
+        Args:
+            tau: [-] (n,) shares of the length.
+        """
+        speed: np.ndarray = polynomial.polyval(tau, [self.speed or 0.0, *self.gained_speed])
+        return speed
+
 
 def _value(coefficients: Coefficients, tau: float) -> float:
     total = 0.0
@@ -102,17 +137,16 @@ def fit_curve(turned: np.ndarray, length: float, speed: np.ndarray | None = None
         length: [m]
         speed: [m/s] (nodes,) v_L at the nodes; None: the formation's.
     """
-    angle = _TO_CHEBYSHEV @ turned
+    powers = _without_start(_TO_CHEBYSHEV @ turned, DEGREE)
     waves = np.cos(turned), np.sin(turned)
     ahead, starboard = (length * chebyshev.chebint(_TO_CHEBYSHEV @ wave, lbnd=-1.0, scl=0.5) for wave in waves)
-    bends = _powers(chebyshev.chebder(angle, scl=2.0 / length), DEGREE)
     gained = (0.0,) * DEGREE if speed is None else _without_start(_TO_CHEBYSHEV @ speed, DEGREE)
     return Curve(
         length=length,
-        turned=_without_start(angle, DEGREE),
+        turned=powers,
         ahead=_without_start(ahead, PLACE_DEGREE),
         starboard=_without_start(starboard, PLACE_DEGREE),
-        bends=_extremes(bends),
+        bends=bends_of_turn(powers, length),
         speed=None if speed is None else float(speed[0]),
         gained_speed=gained,
     )
@@ -129,8 +163,8 @@ def fits(curve: Curve, turned: np.ndarray, ahead: np.ndarray, starboard: np.ndar
         rounding: [m] of the coordinates.
     """
     room = 1e-11 * max(1.0, curve.length) + rounding
-    found = [np.array([_value(c, tau) for tau in BETWEEN]) for c in (curve.turned, curve.ahead, curve.starboard)]
-    angles, places = abs(found[0] - turned), np.hypot(found[1] - ahead, found[2] - starboard)
+    found_ahead, found_starboard, found_turned, _ = curve.along(BETWEEN)
+    angles, places = abs(found_turned - turned), np.hypot(found_ahead - ahead, found_starboard - starboard)
     return bool(angles.max() < 1e-11 and places.max() < room)
 
 
@@ -141,23 +175,22 @@ def fits_speed(curve: Curve, speed: np.ndarray) -> bool:
         curve: the fit.
         speed: [m/s] (places,) v_L at `BETWEEN`.
     """
-    found = (curve.speed or 0.0) + np.array([_value(curve.gained_speed, tau) for tau in BETWEEN])
-    return bool(abs(found - speed).max() < 1e-10)
-
-
-def _powers(coefficients: np.ndarray, degree: int) -> np.ndarray:
-    """Chebyshev coefficients in 2 tau - 1 to powers of tau: (degree + 1,)."""
-    series = chebyshev.Chebyshev(coefficients, domain=[0.0, 1.0])
-    powers: np.ndarray = series.convert(kind=polynomial.Polynomial, domain=[0.0, 1.0], window=[0.0, 1.0]).coef
-    return np.pad(powers, (0, degree + 1 - len(powers)))
+    return bool(abs(curve.speed_along(BETWEEN) - speed).max() < 1e-10)
 
 
 def _without_start(coefficients: np.ndarray, degree: int) -> Coefficients:
-    return tuple(float(c) for c in _powers(coefficients, degree)[1:])
+    powers = coefficients @ _TO_POWERS[: len(coefficients)]
+    return tuple(float(c) for c in powers[1 : degree + 1])
 
 
-def _extremes(bends: np.ndarray) -> tuple[float, float]:
-    """Least and greatest value of a polynomial in [0, 1], a little widened: roots are found to rounding."""
+def bends_of_turn(turned: Coefficients, length: float) -> tuple[float, float]:
+    """Least and greatest curvature [1/m] of a curve.
+
+    Args:
+        turned: [rad] what multiplies tau, tau^2, ...
+        length: [m]
+    """
+    bends = polynomial.polyder([0.0, *turned]) / length
     turns = polynomial.polyroots(np.trim_zeros(polynomial.polyder(bends), "b")) if bends[1:].any() else np.zeros(0)
     inside = [z.real for z in np.atleast_1d(turns) if 0.0 < z.real < 1.0]
     values = polynomial.polyval(np.array([0.0, 1.0, *inside, *BETWEEN]), bends)

@@ -7,7 +7,7 @@ import numpy as np
 
 from cardume.paths import table
 from cardume.paths.corner import OwnSegment, corner_angle, join_corner, offset_segment
-from cardume.paths.curve import Curve
+from cardume.paths.curve import Curve, bends_of_turn
 from cardume.paths.segment import GeometryError, Segment
 
 
@@ -142,6 +142,28 @@ def _write_row(row: np.ndarray, segment: OwnSegment, speed: float) -> None:
     row[table.REFERENCE_RATE] = reference_length / shape.length
     if shape.curve:
         _write_curve(row, shape, shape.curve)
+
+
+def curve_of(row: np.ndarray) -> Curve:
+    """The curve that a row of a path table describes.
+
+    Args:
+        row: [any] (SEGMENT_WIDTH,).
+    """
+
+    def numbers(first: int, count: int) -> tuple[float, ...]:
+        return tuple(float(x) for x in row[first : first + count])
+
+    turned, length = numbers(table.TURNED, table.DEGREE), float(row[table.REFERENCE_LENGTH])
+    return Curve(
+        length=length,
+        turned=turned,
+        ahead=numbers(table.GONE_AHEAD, table.PLACE_DEGREE),
+        starboard=numbers(table.GONE_STARBOARD, table.PLACE_DEGREE),
+        bends=bends_of_turn(turned, length),
+        speed=float(row[table.SPEED]),
+        gained_speed=numbers(table.GAINED_SPEED, table.DEGREE),
+    )
 
 
 def _write_curve(row: np.ndarray, shape: Segment, curve: Curve) -> None:

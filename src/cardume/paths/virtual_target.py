@@ -57,6 +57,54 @@ def bend_at(path: Rows, segment: float, along: float) -> Bend:
     return bend
 
 
+@compiled
+def run_along(
+    place: Place, motion: Motion, memory: PathPlace, dt: float, target_gain: float, through_water: float
+) -> tuple[PathError, PathPlace]:
+    """Compare the vehicle with its target, and send that on; see `virtual_target`.
+
+    Args:
+        place: position [m] and path table of the vehicle.
+        motion: that it believes to have.
+        memory: the target's place on the path.
+        dt: [s] tick.
+        target_gain: [1/s] k2.
+        through_water: [-] 1: by heading and speed through the water; 0: over ground.
+
+    Returns:
+        The path error, and the target's next place.
+    """
+    path, s = place.path, memory.arc_length
+    segment = segment_near(path, s, ARC_START, memory.segment)
+    along = s - segment_value(path, segment, ARC_START)
+    target, bend = point_on(path, segment, s), bend_at(path, segment, along)
+    north, east = place.north - target.north, place.east - target.east
+    ahead = north * target.cos_course + east * target.sin_course
+    over_north, over_east = motion.north + motion.current_north, motion.east + motion.current_east
+    over_ground = over_north * target.cos_course + over_east * target.sin_course
+    sine, cosine = sincos(motion.heading)
+    in_water = motion.surge * (cosine * target.cos_course + sine * target.sin_course)
+    carried = over_ground + through_water * (in_water - over_ground)
+    path_parameter = segment_value(path, segment, REFERENCE_START) + bend.gained - load(path, AHEAD)
+    error = PathError(
+        target.course,
+        bend.curvature,
+        east * target.cos_course - north * target.sin_course,
+        ahead,
+        path_parameter,
+        bend.stretch,
+        formation_speed(path, segment, path_parameter),
+        s,
+        where(s >= load(path, LENGTH_OWN), 1.0, 0.0),
+        0.0 * ahead,
+        (carried + target_gain * ahead) * bend.rate,
+        path,
+    )
+    after = s + dt * carried + (1.0 - exp(-target_gain * dt)) * ahead
+    # A position that is not a number must not be remembered.
+    return error, PathPlace(segment, where(after == after, after, s))
+
+
 @reference_point_law
 def virtual_target(
     place: Place,
@@ -91,32 +139,4 @@ def virtual_target(
     Source: paper eqs. (24)-(27), with chi_p where (27) prints chi; course and ground speed instead of
     heading and speed through the water.
     """
-    path, s = place.path, memory.arc_length
-    segment = segment_near(path, s, ARC_START, memory.segment)
-    along = s - segment_value(path, segment, ARC_START)
-    target, bend = point_on(path, segment, s), bend_at(path, segment, along)
-    north, east = place.north - target.north, place.east - target.east
-    ahead = north * target.cos_course + east * target.sin_course
-    over_north, over_east = motion.north + motion.current_north, motion.east + motion.current_east
-    over_ground = over_north * target.cos_course + over_east * target.sin_course
-    sine, cosine = sincos(motion.heading)
-    in_water = motion.surge * (cosine * target.cos_course + sine * target.sin_course)
-    carried = over_ground + through_water * (in_water - over_ground)
-    path_parameter = segment_value(path, segment, REFERENCE_START) + bend.gained - load(path, AHEAD)
-    error = PathError(
-        target.course,
-        bend.curvature,
-        east * target.cos_course - north * target.sin_course,
-        ahead,
-        path_parameter,
-        bend.stretch,
-        formation_speed(path, segment, path_parameter),
-        s,
-        where(s >= load(path, LENGTH_OWN), 1.0, 0.0),
-        0.0 * ahead,
-        (carried + target_gain * ahead) * bend.rate,
-        path,
-    )
-    after = s + dt * carried + (1.0 - exp(-target_gain * dt)) * ahead
-    # A position that is not a number must not be remembered.
-    return error, PathPlace(segment, where(after == after, after, s))
+    return run_along(place, motion, memory, dt, target_gain, through_water)

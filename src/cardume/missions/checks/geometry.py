@@ -15,7 +15,7 @@ from cardume.missions.mission import STILL, Mission
 from cardume.missions.planning import Planned, make_plan
 from cardume.missions.vehicle import Offset, RelativeStart
 from cardume.paths import table
-from cardume.paths.offset import largest_offset, offset_path
+from cardume.paths.offset import curve_of, largest_offset, offset_path
 from cardume.paths.segment import GeometryError, Segment
 
 SLACK = 1.01
@@ -64,7 +64,8 @@ def segments_of(reference: np.ndarray) -> list[Segment]:
             course=row[table.START_COURSE],
             curvature=row[table.CURVATURE],
             length=row[table.LENGTH],
-            speed=row[table.SPEED],
+            speed=None if row[table.IS_CURVE] else row[table.SPEED],
+            curve=curve_of(row) if row[table.IS_CURVE] else None,
         )
         for row in table.rows_on_path(reference)
     ]
@@ -160,11 +161,12 @@ def _aims_of(scene: Scene, craft: Craft) -> Iterator[Ranked]:
         return
     lookahead, key = law.value("lookahead"), scene.key(craft, "guidance.lookahead")
     for row in table.rows_on_path(craft.plan.path):
-        radius, length = row[table.RADIUS], row[table.LENGTH]
+        radius, length = _tightest(row), row[table.LENGTH]
         if not radius:
             continue
         ratio = lookahead / radius
-        where = f"{craft.name}, on its arc of radius {show(radius, 'm')}"
+        kind = "curve, which bends to a" if row[table.IS_CURVE] else "arc of"
+        where = f"{craft.name}, on its {kind} radius {show(radius, 'm')}"
         if ratio >= 0.5 * math.pi:
             # after a right angle the aim is astern of the way the path goes; a shorter arc is but cut
             level: Level = "error" if length / radius > 0.5 * math.pi * SLACK else "warning"
@@ -181,3 +183,11 @@ def _aims_of(scene: Scene, craft: Craft) -> Iterator[Ranked]:
             )
             suggestion = setting_word(scene.key(craft, "guidance.law"), "line_of_sight")
             yield Ranked(error, Finding("note", key, message, suggestion))
+
+
+def _tightest(row: np.ndarray) -> float:
+    """Smallest radius [m] of a segment of an own path; 0 where it is straight."""
+    if not row[table.IS_CURVE]:
+        return float(row[table.RADIUS])
+    own = [abs(c / (1.0 - c * row[table.OFFSET])) for c in curve_of(row).bends]
+    return 1.0 / max(own) if max(own) else 0.0

@@ -8,6 +8,7 @@ import numpy as np
 
 from cardume.compiler import SharedRows
 from cardume.paths import table
+from cardume.paths.offset import curve_of
 from cardume.signals import Noise, Water, Where
 from cardume.simulation.plan import Choice, Plan
 
@@ -66,6 +67,10 @@ def stations_of(path: np.ndarray, duration: float) -> Stations:
     for row in table.rows_on_path(path):
         if time > duration:
             break
+        if row[table.IS_CURVE]:
+            parts.append(_along_curve(row, time))
+            time = float(parts[-1][1, -1])
+            continue
         speed = row[table.STRETCH] * row[table.SPEED]
         parts.append(_along_segment(row, min(row[table.LENGTH], (duration - time) * speed), time, speed))
         time += row[table.LENGTH] / speed
@@ -105,6 +110,31 @@ def _along_segment(row: np.ndarray, length: float, time: float, speed: float) ->
             curvature * same,
             row[table.STRETCH] * same,
             row[table.SPEED] * same,
+        ]
+    )
+
+
+def _along_curve(row: np.ndarray, time: float) -> np.ndarray:
+    """The same of a curve, whose speed and bend change on the way."""
+    curve, offset = curve_of(row), row[table.OFFSET]
+    finest = max(max(map(abs, curve.bends)) * curve.length / FINEST_TURN, curve.length / LONGEST_STEP, 4.0)
+    tau = np.linspace(0.0, 1.0, min(math.ceil(finest), MOST_IN_SEGMENT) + 1)
+    ahead, aside, turned, bend = curve.along(tau)
+    ahead, aside = ahead - offset * np.sin(turned), aside + offset * (np.cos(turned) - 1.0)
+    speed, stretch = curve.speed_along(tau), 1.0 - bend * offset
+    slowness = 1.0 / speed
+    times = np.cumsum(0.5 * (slowness[1:] + slowness[:-1]) * np.diff(tau) * curve.length)
+    sine, cosine = row[table.SIN_COURSE], row[table.COS_COURSE]
+    return np.array(
+        [
+            row[table.REFERENCE_START] + tau * curve.length,
+            time + np.concatenate([[0.0], times]),
+            row[table.START_NORTH] + ahead * cosine - aside * sine,
+            row[table.START_EAST] + ahead * sine + aside * cosine,
+            row[table.START_COURSE] + turned,
+            bend / stretch,
+            stretch,
+            speed,
         ]
     )
 

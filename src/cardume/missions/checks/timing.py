@@ -10,6 +10,8 @@ from cardume.missions.checks.fixes import has_parameter
 from cardume.missions.checks.scene import Craft, Scene
 from cardume.missions.route import CirclePath
 from cardume.paths import table
+from cardume.paths.curve import BETWEEN
+from cardume.paths.offset import curve_of
 from cardume.vehicles.thrusters import smallest_plant_step
 
 BANDWIDTHS = ("speed_bandwidth", "turn_bandwidth", "heave_bandwidth")  # of filters integrated by Euler's rule
@@ -21,7 +23,7 @@ def check_duration(scene: Scene) -> Iterator[Finding]:
         return
     rows = table.rows_on_path(scene.reference)
     length = float(rows[:, table.LENGTH].sum())
-    needed = float((rows[:, table.LENGTH] / rows[:, table.SPEED]).sum())
+    needed = float(_durations(rows).sum())
     duration = scene.mission.duration
     if duration >= needed:
         return
@@ -33,10 +35,19 @@ def check_duration(scene: Scene) -> Iterator[Finding]:
     yield Finding("warning", "duration", message, setting("duration", 10.0 * math.ceil(needed / 10.0), "s"))
 
 
+def _durations(rows: np.ndarray) -> np.ndarray:
+    """Times (n,) [s] that the formation takes for each segment."""
+    speeds = rows[:, table.SPEED].copy()
+    for k in np.flatnonzero(rows[:, table.IS_CURVE]):
+        speeds[k] = len(BETWEEN) / (1.0 / curve_of(rows[k]).speed_along(BETWEEN)).sum()
+    times: np.ndarray = rows[:, table.LENGTH] / speeds
+    return times
+
+
 def _schedule(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Times [s] and how far the formation is then [m]."""
     lengths = rows[:, table.LENGTH]
-    times = np.concatenate([[0.0], np.cumsum(lengths / rows[:, table.SPEED])])
+    times = np.concatenate([[0.0], np.cumsum(_durations(rows))])
     return times, np.concatenate([[0.0], np.cumsum(lengths)])
 
 
