@@ -125,6 +125,8 @@ BELOW = mission(
 TURNING = mission([POINT], STILL + "current: {type: step, later_speed: 0.1 m/s, later_towards: 90 deg, at: 100 s}")
 SILENT, UNDER = "vehicles.a.messaging=none", "vehicles.b.depth=5 m"
 
+LATE_RATES = ["neighbors.law=reported_speed", "messaging.period=1 s"]
+
 # What spoils a mission that is otherwise without this finding, its level and its key.
 CASES = [
     (mission([POINT], path=MOWER), ["vehicles.a.offset.starboard=15 m"], "error", "vehicles.a.offset.starboard"),
@@ -173,6 +175,7 @@ CASES = [
     (PAIR, channel(loss="1"), "error", "acoustics.loss"),
     (PAIR, channel(max_range="4 m"), "error", "acoustics.max_range"),
     (PAIR, ["coordination.length_scale=0.01 m"], "warning", "coordination.length_scale"),
+    (PAIR, [*channel(delay="8 s"), *LATE_RATES], "warning", "coordination.gain"),
     (TEAM, ["vehicles.b.sensors.ahrs=none"], "error", "vehicles.b.sensors.ahrs"),
     (TEAM, ["vehicles.b.sensors.thruster_speed=none"], "error", "vehicles.b.sensors.thruster_speed"),
     (TEAM, ["vehicles.b.sensors.depth=none"], "warning", "vehicles.b.sensors.depth"),
@@ -450,6 +453,16 @@ def test_fleets_that_are_told_not_to_agree_do_not(overrides: list[str], agree: b
     assert any(finding.level == "error" for finding in findings(PAIR, ahead)) is not agree
     states = fly(PAIR, "path.length=1 km", *ahead).channels["coordination_state"][-1]
     assert bool(abs(states[0] - states[1]) < 0.1) is agree
+
+
+@pytest.mark.parametrize("law", ["coordinated", "reported_speed"])
+@pytest.mark.parametrize(("gain", "settles"), [(0.12, True), (0.3, False)])
+def test_late_reports_that_are_carried_on_make_a_fast_fleet_swing(law: str, gain: float, settles: bool) -> None:
+    late = [*channel(delay="6 s"), f"neighbors.law={law}", "messaging.period=1 s", f"coordination.gain={gain} m/s"]
+    late += ["vehicles.a.start.along_track=0.5 m", "path.length=1 km", "duration=1500 s"]
+    assert ("warning" in told(PAIR, "coordination.gain", *late)) is not settles
+    correction = np.abs(fly(PAIR, *late).channels["speed_correction"][-100:]).max()
+    assert bool(correction < 0.01) is settles
 
 
 @pytest.mark.parametrize(("usbl", "agree"), [("{}", True), ("none", False)])

@@ -52,6 +52,7 @@ CHECKS: tuple[Check, ...] = (
     guidance.check_compensation,
     coordination.check_agreement,
     coordination.check_prediction,
+    coordination.check_late_rates,
     sensing.check_senses,
     sensing.check_lost,
     sensing.check_lateness,

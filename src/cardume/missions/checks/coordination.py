@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from cardume.maths.graphs import adjacency_of, can_agree, spectrum
-from cardume.missions.checks.finding import Finding, Ranked, at_least, setting_word, show, worst
-from cardume.missions.checks.fixes import can_hear, has_parameter
+from cardume.missions.checks.finding import Finding, Ranked, at_least, at_most, setting_word, show, worst
+from cardume.missions.checks.fixes import can_hear, has_parameter, travel_time
 from cardume.missions.checks.scene import Craft, Scene
 
 
@@ -109,3 +109,47 @@ def _restless(scene: Scene, craft: Craft) -> Iterator[Ranked]:
         f" chatter by up to {show(gain * tick, 'm')}"
     )
     yield Ranked(step, Finding("warning", key, message, at_least(key, 2.0 * gain * tick, "m")))
+
+
+def check_late_rates(scene: Scene) -> list[Finding]:
+    """Late reports that are carried on by the path speed in them, gamma_j + gamma_j' age, in a fast coordination.
+
+    x' = -(k / gamma_0) (x - mu (x(t - age) + age x'(t - age))), mu an eigenvalue of D^-1 A, 1 among them
+
+    The rate comes back through the others: of neutral type, stable iff k age / gamma_0 < 1.
+    `coordinated` does so at each report, and then goes on by the others' own law: it matters where the next
+    report is on its way before the last has come. `reported_speed` does so until the next report.
+
+    Source: tests/oracles/test_stale_neighbors.py, which flies it to both sides of the limit.
+    """
+    return worst(ranked for place in range(len(scene.crafts)) for ranked in _hurried(scene, place))
+
+
+def _hurried(scene: Scene, place: int) -> Iterator[Ranked]:
+    craft, tick = scene.crafts[place], scene.mission.tick
+    if not craft.correction:
+        return
+    for k, speaker in enumerate(scene.crafts):
+        if k == place or not scene.mission.adjacency[place][k]:
+            continue
+        age = _age_carried_on(craft, speaker, scene.distances[place, k], tick)
+        if craft.correction * age < craft.reach:
+            continue
+        key = scene.key(craft, "coordination.gain")
+        message = (
+            f"{craft.name} hears {speaker.name} {show(age, 's')} late and carries that on by the speed it was told:"
+            f" k age / gamma_0 = {craft.correction * age / craft.reach:.3g} with gain {show(craft.correction, 'm/s')} and"
+            f" length_scale {show(craft.reach, 'm')}; from 1 on the fleet swings and never settles"
+        )
+        yield Ranked(age, Finding("warning", key, message, at_most(key, 0.8 * craft.reach / age, "m/s")))
+
+
+def _age_carried_on(listener: Craft, speaker: Craft, distance: float, tick: float) -> float:
+    """[s] for which a report is carried on by its own path speed; 0 where that does no harm."""
+    messaging, law = speaker.law("messaging"), listener.law("neighbors").law.name
+    if messaging.law.name != "periodic" or not can_hear(speaker.plan, listener.plan, distance):
+        return 0.0
+    way, period = travel_time(listener.plan, distance, tick), messaging.value("period")
+    if law == "reported_speed":
+        return way + period
+    return way if law == "coordinated" and period < way else 0.0
