@@ -138,7 +138,7 @@ def _hurried(scene: Scene, place: int) -> Iterator[Ranked]:
         key = scene.key(craft, "coordination.gain")
         message = (
             f"{craft.name} hears {speaker.name} {show(age, 's')} late and carries that on by the speed it was told:"
-            f" k age / gamma_0 = {craft.correction * age / craft.reach:.3g} with gain {show(craft.correction, 'm/s')} and"
+            f" k age / gamma_0 = {craft.correction * age / craft.reach:.3g} at gain {show(craft.correction, 'm/s')},"
             f" length_scale {show(craft.reach, 'm')}; from 1 on the fleet swings and never settles"
         )
         yield Ranked(age, Finding("warning", key, message, at_most(key, 0.8 * craft.reach / age, "m/s")))
