@@ -57,3 +57,55 @@ def test_on_a_curve_in_a_current_observer_and_crab_do_what_they_do_on_lines(law:
     crab = water + "current_observer: {law: complementary, k1: 1 1/s, k2: 0.25 1/s^2}\ncompensation: crab"
     assert left_over(law, STARTS[2], current=water) > 0.4
     assert left_over(law, STARTS[2], current=crab) < 0.05
+
+
+SMOOTH = """
+cardume: 1
+name: smooth
+seed: {seed}
+duration: 200 s
+path: {{type: lawnmower, leg: 60 m, legs: 2, spacing: 30 m, turn: starboard}}
+formation: {{speed: 0.5 m/s}}
+model: medusa
+sensors: {sensors}
+vehicles:
+  - {{name: tracks, start: {{cross_track: 8 m, speed: 0.5 m/s}}, guidance: {{law: trajectory_tracking}}}}
+  - name: follows
+    offset: {{ahead: -20 m}}
+    start: {{along_track: -20 m, cross_track: 8 m, speed: 0.5 m/s}}
+    guidance: {{law: body_frame_target}}
+  - name: sights
+    offset: {{ahead: -40 m}}
+    start: {{along_track: -40 m, cross_track: 8 m, speed: 0.5 m/s}}
+    guidance: {{law: line_of_sight, lookahead: 5 m}}
+position: {{law: direct}}
+coordination: none
+messaging: none
+end: continue
+"""
+NOISY = "{gnss: {sigma: 0.2 m, period: 0.5 s}, ahrs: {}, depth: {}, thruster_speed: {}}"
+
+
+def efforts(sensors: str, metric: str) -> dict[str, float]:
+    """The mean of a metric over three seeds: tracking a trajectory, the same law with a target that waits, and (3)."""
+    flights = [fly_text(SMOOTH.format(seed=seed, sensors=sensors)) for seed in (1, 2, 3)]
+    return {
+        name: float(np.mean([f.metrics.vehicles[name][metric] for f in flights])) for name in flights[0].vehicle_names
+    }
+
+
+def test_line_of_sight_is_smoother_than_tracking_where_positions_are_noisy() -> None:
+    """A tracker answers noise along the path too: five times the yaw effort of line of sight, and more energy."""
+    yaw, energy = efforts(NOISY, "yaw_effort"), efforts(NOISY, "energy")
+    print(yaw, energy)
+    assert yaw["tracks"] > 4.0 * yaw["sights"]
+    assert energy["tracks"] > 1.1 * energy["sights"]
+
+
+def test_it_is_the_law_that_is_smoother_not_the_target_that_waits() -> None:
+    """The same law with a target that waits is as rough as with one that does not, with noise and without."""
+    for sensors in (NOISY, "ideal"):
+        yaw = efforts(sensors, "yaw_effort")
+        print(yaw)
+        assert yaw["follows"] == pytest.approx(yaw["tracks"], rel=0.35)
+    assert yaw["sights"] > 1.5 * yaw["tracks"]  # exact sensors, from 8 m aside: line of sight turns harder
