@@ -164,6 +164,8 @@ def _as_varied(problem: Any, changes: Sequence[str]) -> Any:
     source = problem.position.source
     if any(source == f"--set {printable(change)}" for change in changes):
         return problem._replace(position=problem.position._replace(source=source.replace("--set", "--vary", 1)))
+    if changes:
+        return problem._replace(message=f"{problem.message} (in the arm {', '.join(map(printable, changes))})")
     return problem
 
 
