@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 DONE, UNTOLD = 0, 1
 
 
-@click.command()
+@click.command(short_help="Thruster speed to speed, from a log or a table.")
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option("--vehicle", "vehicles", multiple=True, metavar="NAME", help="Only this one of a log; may be repeated.")
 @click.option("--model", metavar="NAME", help="Whose thrusters and drag are believed, instead of the log's own.")
