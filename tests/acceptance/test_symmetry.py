@@ -80,6 +80,21 @@ def test_every_guidance_law_knows_no_place_no_direction_and_no_side(
     compare(fly_text(here.text()), fly_text(there.text()), angle, north, east, side=-1.0)
 
 
+@settings(few, max_examples=3)
+@given(
+    shape=st.sampled_from(["lemniscate", "spline"]),
+    reference=st.sampled_from(["projection", "virtual_target"]),
+    course=st.floats(-3.1, 3.1),
+    angle=angles,
+)
+def test_scenes_on_curves_turned_and_mirrored(shape: str, reference: str, course: float, angle: float) -> None:
+    law = f"line_of_sight, reference_point: {reference}"
+    scene = Scene(kinematic.members, "kinematic", shape, 3.7, -8.9, course, guidance=law, duration=60.0)
+    flight = fly_text(scene.text())
+    compare(flight, fly_text(scene.turned(angle).text()), angle=angle)
+    compare(flight, fly_text(scene.mirrored().text()), side=-1.0)
+
+
 def compare(one: Flight, other: Flight, angle: float = 0.0, north: float = 0.0, east: float = 0.0, side: float = 1.0):
     """Check that `other` is `one`, mirrored, turned and moved."""
     assert one.reason == other.reason == "completed"
