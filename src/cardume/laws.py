@@ -9,6 +9,7 @@ mission file may set, with unit, default and bounds.  Compiled code calls it by 
 import importlib
 import inspect
 import math
+import threading
 import typing
 from collections.abc import Callable
 from types import MappingProxyType
@@ -132,6 +133,7 @@ FAMILIES = (
     "bathymetry",
 )
 _families: dict[str, "Family"] = {}
+_compiling = threading.RLock()  # a law has one address in a process, also where threads ask for it at once
 
 
 class Family:
@@ -357,10 +359,11 @@ class Law:
         Raises:
             LawError: the law does not compile, or returned the wrong thing when tried.
         """
-        if lanes not in self._handles:
-            if not self.is_builtin and not self._handles:
-                self._try_once()
-            self._handles[lanes] = self._compile_lanes() if lanes else self._compile(FLAT)
+        with _compiling:
+            if lanes not in self._handles:
+                if not self.is_builtin and not self._handles:
+                    self._try_once()
+                self._handles[lanes] = self._compile_lanes() if lanes else self._compile(FLAT)
         return self._handles[lanes]
 
     def _compile_lanes(self) -> int:
