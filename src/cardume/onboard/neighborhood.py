@@ -64,11 +64,17 @@ class Said(NamedTuple):
 
 
 @compiled
+def forget_news(mind: Mind) -> None:
+    """What was new in the last tick is known now."""
+    for k in range(1, load(mind.known, 0) + 1):
+        put_fresh(mind.others, load(mind.known, k), Fresh(0.0))
+
+
+@compiled
 def listen(mind: Mind, heard: Rows) -> None:
     """Note the newest that the messages of this tick say of each vehicle that matters."""
     for k in range(1, load(mind.known, 0) + 1):
         vehicle = load(mind.known, k)
-        put_fresh(mind.others, vehicle, Fresh(0.0))
         for source in range(load(mind.sources, 0)):
             message = message_from(heard, mind.size, source)
             if some(is_fresh(message)):
@@ -104,11 +110,12 @@ def learn(mind: Mind, vehicle: int, is_new: bool, news: News) -> None:
 def look_around(
     mind: Mind, measured: Measured, position: NavigationEstimate, motion: Motion, error: PathError, time: float
 ) -> None:
-    """With a USBL head: turn each new reading into the other's position and coordination state.
+    """Begin the tick without news of the others; with a USBL head, turn each new reading into news.
 
     p_j = p_1 - V_1 age + R_1 r, R_1 the measured attitude, turned back by the yaw rate times the age;
     gamma_j is the projection of p_j on j's own path.
     """
+    forget_news(mind)
     shares = some(get_setup(mind.own, 0).shares_sightings > 0.5)
     for vehicle in range(mind.size if shares else 0):
         reading = at(measured.usbl, vehicle * USBL_WIDTH)
