@@ -98,9 +98,7 @@ BAD = {
     # path and formation
     "no path": instead("path: {type: line, length: 200 m}\n", "", 1, "path.type", "missing", "line, arc, circle"),
     "a path without type": instead("type: line, ", "", 4, "path.type", "missing"),
-    "a path that is not there yet": instead(
-        "type: line", "type: spline", 4, "path.type", "Did you mean 'line'?", "segments"
-    ),
+    "a path that there is not": instead("type: line", "type: lime", 4, "path.type", "Did you mean 'line'?", "segments"),
     "a path of type null": instead("type: line", "type: ~", 4, "path.type", "of type nothing"),
     "a line without length": instead(", length: 200 m", "", 4, "path.length", "missing"),
     "a line of no length": instead("200 m", "0 m", 4, "path.length", "above 0 m"),
