@@ -218,7 +218,10 @@ def test_check_knows_that_bottom_track_needs_a_crab_with_sway() -> None:
 
 
 def test_pings_that_fail_leave_the_last_good_reading() -> None:
-    """A tenth of the pings lost, as DUNE has it, costs a steady vehicle nothing."""
+    """A tenth of the pings lost, as DUNE has it, costs a steady vehicle nothing; not held, or all lost, they do."""
     flight = fly_text(text(BOTTOM + ", invalid: 0.1", observer="none", compensation=STEERS))
     _, errors = series(flight, "cross_track")
     assert np.abs(errors[-50:]).max() < 1e-3
+    for lossy in ("invalid: 0.1, hold: 0 s", "invalid: 1"):
+        flight = fly_text(text(f"{BOTTOM}, {lossy}", observer="none", compensation=STEERS))
+        assert np.abs(series(flight, "cross_track")[1][-50:]).max() > 0.02

@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.optimize import brentq
+from scipy.special import ellipk
 
+from cardume.paths.table import LENGTH_REFERENCE, SPEED, rows_on_path
 from flying import fly_text, limit, value_at
+from properties.flown import plan_of
 
 POINTS = [(5.0, 0.3), (25.0, 0.62), (40.0, 0.2)]  # no corner at the mission's ends
 MISSION = """
@@ -114,6 +117,16 @@ def test_along_the_path_gamma_solves_its_own_equation(points: list[tuple[float, 
 
     found, _ = limit(state, (0.1, 0.05, 0.025))
     assert found == pytest.approx(gamma_at(50.0, points), rel=2e-5)
+
+
+def test_the_mean_of_a_profile_along_a_closed_path_is_that_of_its_laps() -> None:
+    """The pieces by which a closed path goes on beyond its ends are not flown, and do not count."""
+    points = [(0.0, 0.3), (60.0, 0.6)]
+    eight = "{type: lemniscate, centre: {north: 0, east: 0}, half_width: 10 m}"
+    path = plan_of(along(0.1, points, eight)).vehicles[0].path
+    lap = path[LENGTH_REFERENCE]
+    assert lap == pytest.approx(4.0 * 10.0 * ellipk(-1.0), rel=1e-12)
+    assert rows_on_path(path)[:, SPEED] == pytest.approx(integral(points, lap) / lap, rel=1e-12)
 
 
 def test_all_read_v_l_at_the_formations_point() -> None:

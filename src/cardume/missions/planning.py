@@ -35,7 +35,7 @@ from cardume.onboard.mind import Setup
 from cardume.paths.offset import offset_path
 from cardume.paths.outline import outline
 from cardume.paths.projection import point_at
-from cardume.paths.segment import GeometryError, ReferencePath
+from cardume.paths.segment import GeometryError, ReferencePath, length_of
 from cardume.paths.table import PathPlace, start_at
 from cardume.signals import Command, Reference, VesselState, Water
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
@@ -76,7 +76,7 @@ def make_plan(mission: Mission, catalog: Catalog) -> Planned:
     """
     origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
     reference, origin = reference_path(mission, origin)
-    speed = table_speed(mission, sum(segment.length for segment in reference))
+    speed = table_speed(mission, length_of(reference))
     own = _positioned(mission, "path", lambda: offset_path(reference, 0.0, 0.0, speed))
     if not np.isfinite(own).all():
         raise mission.error("formation.speed", "is not given, and not every piece of the path has a speed; give it")

@@ -51,7 +51,7 @@ def body_frame_target(
 ) -> tuple[Demand, Target]:
     """Bring a point ahead of the vehicle onto a target that waits for it.
 
-    (u, b r) = -a tanh(K e_B / a) - (0, v) - R(psi)^T V_c + R(psi)^T t s',   e_B = R(psi)^T (p - p_t) + (b, 0)
+    (u, b r) = -a tanh(K e_B / a) - (0, v) - R(psi)^T V_c + R(psi)^T t v_d,   e_B = R(psi)^T (p - p_t) + (b, 0)
     s'' = sat(-kz (s' - v_d) + ke t^T R(psi) e_B),   s' within its bounds
 
     p_t is the target, at arc length s of the vehicle's own path, t the path's tangent there; the target starts

@@ -58,12 +58,12 @@ def look_at(error: PathError, motion: Motion, arc_length: float, arm: float) -> 
 def chase(quarry: Quarry, motion: Motion, target_speed: float, how: Chase) -> Demand:
     """Speed and yaw rate that let e_B die out while the point moves on.
 
-    (u, b r) = -a tanh(K e_B / a) - (0, v) - R(psi)^T V_c + R(psi)^T t s'
+    (u, b r) = -a tanh(K e_B / a) - (0, v) - R(psi)^T V_c + R(psi)^T t v_d
 
     Args:
         quarry: the point, and e_B.
         motion: believed sway [m/s], heading [rad] and current [m/s].
-        target_speed: [m/s] s' of the point along the path.
+        target_speed: [m/s] v_d at which the point is wanted to go along the path.
         how: arm b, gains K, a, and limits.
     """
     sine, cosine = sincos(motion.heading)

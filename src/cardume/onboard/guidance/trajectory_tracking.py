@@ -36,8 +36,8 @@ def trajectory_tracking(
     s' = v_d
 
     `body_frame_target` with a target that does not wait: what path following is measured against. The schedule
-    begins at the vehicle's reference point. Unsaturated each component of e_B dies out by itself in the vehicle's
-    axes; with an error that is small beside a / K, |e_B| = |e_B(0)| exp(-K t) for equal gains.
+    begins at the vehicle's reference point. Unsaturated |e_B| never grows; with an error that is small beside a / K,
+    |e_B| = |e_B(0)| exp(-K t) for equal gains.
 
     Args:
         error: path error; of its reference point only the place counts.
