@@ -50,6 +50,7 @@ from cardume.simulation.tick import TROUBLE_WIDTH
 
 MOST_SLOTS = 64  # messages of one sender under way at once
 USBL_COLUMNS = 4
+CHANCES = ("sigma", "invalid")  # parts of the names of parameters of which chance takes no part where they are 0
 IN_PLANT_STEPS = ("autopilot", "model")  # called once a plant step, the others once a tick
 # Families that keep one memory for each vehicle of the fleet.
 PER_OTHER = frozenset({"coordination", "neighbors", "usbl", "acoustics"})
@@ -225,9 +226,10 @@ def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
 
 
 def _is_noisy(choice: Choice) -> bool:
-    """Whether a sensor's law asks for noise, and is not told that all of it is zero."""
-    sigmas = [p.name for p in choice.law.parameters if "sigma" in p.name]
-    return choice.law.asks_for(Noise) and (not sigmas or any(choice.value(name) for name in sigmas))
+    """Whether a sensor's law asks for noise, and is not told that all of it is zero: a user's is never known to be."""
+    sizes = [p.name for p in choice.law.parameters if any(part in p.name for part in CHANCES)]
+    is_told = choice.law.is_builtin and sizes
+    return choice.law.asks_for(Noise) and (not is_told or any(choice.value(name) for name in sizes))
 
 
 def _key_row(vehicle: VehiclePlan, seed: int) -> np.ndarray:
