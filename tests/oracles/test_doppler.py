@@ -223,5 +223,5 @@ def test_pings_that_fail_leave_the_last_good_reading() -> None:
     _, errors = series(flight, "cross_track")
     assert np.abs(errors[-50:]).max() < 1e-3
     for lossy in ("invalid: 0.1, hold: 0 s", "invalid: 1"):
-        flight = fly_text(text(f"{BOTTOM}, {lossy}", observer="none", compensation=STEERS))
+        flight = fly_text(text(f"{BOTTOM}, {lossy}", observer="none", compensation=STEERS, duration=60.0))
         assert np.abs(series(flight, "cross_track")[1][-50:]).max() > 0.02
