@@ -1,6 +1,8 @@
 """`cardume convert`, and path files where a mission may stand."""
 
+import errno
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -163,6 +165,42 @@ def test_a_file_that_is_there_is_left_alone(desk: Path, cardume: Cardume) -> Non
     assert (desk / "out.gpx").read_text() == "mine"
     assert cardume("convert", source, "out.gpx", "--force", "-q") == Result(0, "", "")
     assert "<gpx" in (desk / "out.gpx").read_text()
+
+
+def test_a_full_disk_leaves_the_old_file(desk: Path, cardume: Cardume, monkeypatch: pytest.MonkeyPatch) -> None:
+    (desk / "out.gpx").write_text("mine")
+
+    def full(_path: Path, _content: bytes) -> int:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    code, _, err = cardume("convert", str(FOLDER / "line.geojson"), "out.gpx", "--force")
+    monkeypatch.undo()
+    assert code == 3  # the input was good
+    assert "the disk of out.gpx is full (No space left on device)" in " ".join(err.split())
+    assert {path.name: path.read_text() for path in desk.iterdir()} == {"out.gpx": "mine"}
+
+
+def test_a_link_laid_where_the_partial_file_will_be_is_not_followed(desk: Path, cardume: Cardume) -> None:
+    (desk / "theirs").write_text("precious")
+    (desk / f".out.gpx.{os.getpid()}.partial").symlink_to("theirs")
+    assert cardume("convert", str(FOLDER / "line.geojson"), "out.gpx", "-q").code == 0
+    assert (desk / "theirs").read_text() == "precious"
+    assert not (desk / "out.gpx").is_symlink()
+
+
+def test_a_name_that_no_disk_takes_is_bad_input(desk: Path, cardume: Cardume) -> None:
+    long = "a" * 300
+    for arguments in (
+        ["convert", str(FOLDER / "line.geojson"), f"{long}.gpx"],
+        ["report", long],
+        ["run", "kinematic/line", "--no-figures", "-o", long],
+    ):
+        code, out, err = cardume(*arguments)
+        assert (code, out) == (2, "")
+        assert f"{long[:250]}" in err
+        assert "File name too long" in err
+    assert not list(desk.iterdir())
 
 
 def test_formats_may_be_named(desk: Path, cardume: Cardume) -> None:

@@ -75,6 +75,8 @@ def spoil(how: str) -> None:
         (path / "summary.json").write_bytes(b"\xff\xfe{")
     elif how == "deep summary":
         (path / "summary.json").write_text("[" * 100_000)
+    elif how == "summary of nothing":
+        (path / "summary.json").write_text('{"cardume_summary": 1, "files": 5}')
 
 
 @pytest.mark.parametrize(
@@ -85,6 +87,7 @@ def spoil(how: str) -> None:
         ("foreign summary", "is not empty, and not a run of cardume"),
         ("damaged summary", "is not empty, and not a run of cardume"),
         ("deep summary", "is not empty, and not a run of cardume"),
+        ("summary of nothing", "is not empty, and not a run of cardume"),
     ],
 )
 def test_what_is_somebody_s_is_left_alone(stage: Stage, cardume: Cardume, how: str, complaint: str) -> None:

@@ -228,3 +228,23 @@ for _ in range(60):
 """
     done = subprocess.run([sys.executable, "-c", script, str(log)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "kind", "dimensions"),
+    [
+        ("", "east", "f8", ()),
+        ("", "north", "f8", ("vehicle", "time")),
+        ("messages", "lost", "S1", ()),
+        ("paths", "east", str, ("point",)),
+    ],
+)
+def test_a_variable_that_lies_about_its_shape_or_kind(
+    log: Path, where: str, name: str, kind: str | type, dimensions: tuple[str, ...]
+) -> None:
+    with Dataset(log, "a") as file:
+        group = file[where] if where else file
+        group.renameVariable(name, "away")
+        group.createVariable(name, kind, dimensions)
+    with pytest.raises(DataError, match=f"is damaged \\({name} is .* not numbers of shape"):
+        read_log(log)

@@ -119,6 +119,8 @@ def test_any_numbers_make_strict_json(values: dict[str, float], wall: float) -> 
         (b'{"mission": 1', "is damaged"),
         (b"[1, 2]", "was not written by cardume"),
         (b'{"name": 1}', "was not written by cardume"),
+        (b'{"cardume_summary": 1, "files": 5}', "'files' is no list of names"),
+        (b'{"cardume_summary": 1, "files": ["a", {}]}', "'files' is no list of names"),
         (b'{"cardume_summary": 2}', "has format 2; this cardume reads format 1"),
     ],
 )

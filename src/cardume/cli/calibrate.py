@@ -11,6 +11,7 @@ import click
 
 from cardume.cli.options import allow_code_option, json_option, quiet_option
 from cardume.errors import DataError
+from cardume.units import printable
 
 if TYPE_CHECKING:
     from cardume.missions.calibration import Calibration
@@ -47,7 +48,8 @@ def calibrate(
     names = [track.name for track in tracks]
     for vehicle in vehicles:
         if vehicle not in names:
-            raise DataError(f"there is no vehicle '{vehicle}' in {log}; there are {', '.join(names)}")
+            given, there = printable(f"'{vehicle}' in {log}"), printable(", ".join(names))
+            raise DataError(f"there is no vehicle {given}; there are {there}")
     found = [fit(track) for track in tracks if not vehicles or track.name in vehicles]
     if as_json:
         click.echo(json.dumps([_plain(calibration) for calibration in found], indent=2))
@@ -75,7 +77,7 @@ def _told(calibration: "Calibration") -> str:
     unit = "m/s" if c.current_north is None else "m"
     turned = f", headings up to {math.degrees(c.headings):.0f} deg apart" if math.isfinite(c.headings) else ""
     lines = [
-        click.style(c.name, bold=True),
+        click.style(printable(c.name), bold=True),
         f"  {c.num_legs} steady legs, {c.used:.0f} of {c.total:.0f} s, {c.slowest:.2f} to {c.fastest:.2f} m/s{turned}",
         f"  scale            {_interval(c.scale)}    believed speed is {c.speed_factor:.4f} of the true one",
     ]

@@ -118,10 +118,14 @@ def _known(kind: str | None, kinds: Sequence[str]) -> str:
 
 def _write(target: Path, content: bytes) -> None:
     from cardume.missions.atomic import write_file
+    from cardume.missions.results import FULL, ResultsError
 
     try:
         write_file(target, content)
     except OSError as problem:
+        if problem.errno in FULL:
+            advice = "nothing was changed there: make room and convert again"
+            raise ResultsError(f"the disk of {printable(str(target))} is full ({problem.strerror}); {advice}") from None
         advice = "give a place that exists and is yours"
         raise InputError(f"{printable(str(target))} cannot be written: {problem.strerror}; {advice}") from None
 

@@ -29,7 +29,8 @@ from cardume.cli.stopping import Stopped
 from cardume.errors import CardumeError
 from cardume.units import printable
 
-FAILED, BUG, INTERRUPTED, BROKEN_PIPE = 3, 4, 130, 141
+BAD_INPUT, FAILED, BUG, INTERRUPTED, BROKEN_PIPE = 2, 3, 4, 130, 141
+UNUSABLE = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM, errno.EROFS)  # names and places of the user's
 
 
 class Commands(click.Group):
@@ -108,6 +109,9 @@ def _run_safely(arguments: Sequence[str] | None) -> int:
     except OSError as problem:
         if problem.errno in (errno.ENOSPC, errno.EDQUOT):
             return _complain_about_output(problem)
+        if problem.errno in UNUSABLE and problem.filename is not None:
+            name = printable(str(problem.filename))
+            return _complain(f"{name} cannot be used: {problem.strerror}; give another name or place", BAD_INPUT)
         return _own_up(problem)
     except Exception as problem:
         return _own_up(problem)

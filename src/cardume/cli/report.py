@@ -54,6 +54,7 @@ def report(
     """
     from cardume.missions.results import ResultsError, note_files
     from cardume.missions.runs import read_run
+    from cardume.units import printable
 
     inches = parse_width(width) if width else None
     if not figures and (formats or width):
@@ -70,7 +71,7 @@ def report(
             note_files(directory, [path.relative_to(directory).as_posix() for path in written])
     except OSError as problem:
         raise ResultsError(
-            f"{target} cannot be written to: {problem.strerror}; give another place with -o DIR"
+            f"{printable(str(target))} cannot be written to: {problem.strerror}; give another place with -o DIR"
         ) from None
     if as_json:
         click.echo(json.dumps({"run": str(directory), "written": [str(path) for path in written]}, indent=2))

@@ -106,7 +106,9 @@ def renewed_directory(target: Path, ours: tuple[str, ...]) -> Iterator[Path]:
 def _beside(path: Path) -> Path:
     """A hidden name in the same folder, so on the same disk; one of ours left by a killed process is removed."""
     partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    if partial.is_dir():
+    if partial.is_symlink():  # somebody else's, and wherever it leads is not ours to write to
+        partial.unlink()
+    elif partial.is_dir():
         shutil.rmtree(partial)
     return partial
 

@@ -256,10 +256,10 @@ def _read(file: Any) -> Log:
         mission_name=str(file.mission_name),
         seed=int(file.seed),
         vehicle_names=tuple(str(name) for name in file["vehicle"][:]),
-        times=file["time"][:],
+        times=_values(file, "time", "time"),
         channels={name: _channel(file, name) for name in CHANNELS},
-        neighbor_state_estimate=file["neighbor_state_estimate"][:],
-        messages={name: file[f"messages/{name}"][:] for name in MESSAGE_COLUMNS},
+        neighbor_state_estimate=_values(file, "neighbor_state_estimate", "time", "vehicle", "neighbor"),
+        messages={name: _values(file["messages"], name, "message") for name in MESSAGE_COLUMNS},
         metrics=Metrics(),
         reason=file.reason,
         failure=str(file.failure) or None,
@@ -273,12 +273,20 @@ def _channel(file: Any, name: str) -> np.ndarray:
     """One channel (time, vehicle); not known where it was not logged yet when the log was written."""
     if name in ADDED and name not in file.variables:
         return np.full((len(file.dimensions["time"]), len(file.dimensions["vehicle"])), np.nan)
-    values: np.ndarray = file[name][:]
+    return _values(file, name, "time", "vehicle")
+
+
+def _values(group: Any, name: str, *dimensions: str) -> np.ndarray:
+    """A variable of numbers over those dimensions, and nothing else that a file may call so."""
+    values = np.asarray(group[name][:])
+    shape = tuple(len(group.dimensions[dimension]) for dimension in dimensions)
+    if values.dtype.kind not in "fiub" or values.shape != shape:
+        raise ValueError(f"{name} is {values.dtype} of shape {values.shape}, not numbers of shape {shape}")
     return values
 
 
 def _read_paths(group: Any, num_vehicles: int) -> Mapping[str, Any]:
-    owner = group["vehicle"][:]
-    points = np.column_stack([group["north"][:], group["east"][:]])
+    owner = _values(group, "vehicle", "point")
+    points = np.column_stack([_values(group, name, "point") for name in ("north", "east")])
     lines = [points[owner == k] for k in range(REFERENCE, num_vehicles)]
     return {"reference_path": lines[0], "own_paths": tuple(lines[1:])}

@@ -187,7 +187,7 @@ def _earlier_run(directory: Path, read: Callable[[Path], dict[str, Any]]) -> tup
     try:
         if not os.listdir(directory):
             return ()
-        listed = {str(file) for file in read(directory).get("files") or ()}
+        listed = set(read(directory).get("files", ()))
         found = set(_files(directory))  # only now: this may be somebody's whole disk
     except OSError as problem:
         raise InputError(f"-o {name}: cannot be read: {problem.strerror}; {advice}") from None

@@ -158,7 +158,19 @@ def read_summary(directory: Path) -> dict[str, Any]:
     if found["cardume_summary"] != FORMAT_VERSION:
         said = printable(str(found["cardume_summary"]))[:40]
         raise DataError(f"{name} has format {said}; this cardume reads format {FORMAT_VERSION}")
+    if not is_list_of_files(found):
+        raise DataError(f"{name} is damaged: its 'files' is no list of names; fly the mission again")
     return found
+
+
+def is_list_of_files(found: Mapping[str, Any]) -> bool:
+    """Whether the `files` of a summary, if it has any, are a list of names.
+
+    Args:
+        found: what was read, of a run or of a comparison.
+    """
+    files = found.get("files", [])
+    return isinstance(files, list) and all(isinstance(name, str) for name in files)
 
 
 def _has(metrics: Metrics, name: str) -> bool:

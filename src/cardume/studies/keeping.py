@@ -15,6 +15,7 @@ from typing import Any
 
 from cardume.errors import DataError
 from cardume.missions.results import Destination, choose_destination, write_atomically
+from cardume.missions.summary import is_list_of_files
 from cardume.simulation.flight import METRICS
 from cardume.studies.comparing import Comparison, value_of
 from cardume.studies.statistics import Estimate
@@ -95,6 +96,8 @@ def read_comparison(directory: Path) -> dict[str, Any]:
         raise DataError(f"{name} is damaged: it is not JSON; compare again") from None
     if not isinstance(found, dict) or "cardume_compare" not in found:
         raise DataError(f"{name} was not written by cardume; give the directory of a comparison")
+    if not is_list_of_files(found):
+        raise DataError(f"{name} is damaged: its 'files' is no list of names; compare again")
     return found
 
 
