@@ -295,10 +295,10 @@ def test_an_edit_of_a_law_a_constant_or_a_helper_of_the_engine(tmp_path: Path) -
     edit(law, "return error.path_course + ", "return 0.25 + error.path_course + ")
     assert run(ENGINE, [tmp_path], cache)[0] == pytest.approx(before[0] + 0.25)
     edit(law, "return 0.25 + error.path_course + ", "return error.path_course + ")
-    edit(package / "onboard" / "agent.py", "HOLD_RADIUS = 1.0", "HOLD_RADIUS = 0.001")
+    edit(package / "onboard" / "phases.py", "HOLD_RADIUS = 1.0", "HOLD_RADIUS = 0.001")
     homing = run(ENGINE, [tmp_path], cache)
     assert before[1] == 0.0 < homing[1]
-    edit(package / "onboard" / "agent.py", "HOLD_RADIUS = 0.001", "HOLD_RADIUS = 1.0")
+    edit(package / "onboard" / "phases.py", "HOLD_RADIUS = 0.001", "HOLD_RADIUS = 1.0")
     assert run(ENGINE, [tmp_path], cache) == before
 
 

@@ -109,6 +109,12 @@ def cached(function: Any, signature: Any = None, keep: bool = True) -> Any:
         return njit(signature, **OPTIONS)(function)
 
 
+def is_kept(compiled_function: Any) -> bool:
+    """Whether the cache on disk has the code of an `entry`, or there is no such cache to fill."""
+    files = getattr(getattr(compiled_function, "_cache", None), "_cache_file", None)
+    return files is None or Path(files._index_path).exists()
+
+
 @cache
 def source_stamp() -> str:
     """Hash of every source file of the compute layers (the command line is not among them)."""

@@ -56,12 +56,13 @@ IN_PLANT_STEPS = ("autopilot", "model")  # called once a plant step, the others 
 PER_OTHER = frozenset({"coordination", "neighbors", "usbl", "acoustics"})
 
 
-def make_tables(plan: Plan, lanes: bool = False) -> Tables:
+def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True) -> Tables:
     """Write the tables of one mission.
 
     Args:
         plan: the mission.
         lanes: [-] look the laws up for the lanes kernel; `join` then puts eight missions together.
+        with_laws: [-] False leaves their addresses out, and compiles none: such tables have the right types, no more.
 
     Returns:
         Tables of (n,) arrays.
@@ -92,7 +93,7 @@ def make_tables(plan: Plan, lanes: bool = False) -> Tables:
             int(plan.is_watched),
         ),
         plan.tick,
-        _handles(vehicles, size, lanes),
+        _handles(vehicles, size, lanes) if with_laws else np.zeros(size * len(FAMILIES) * COLUMNS, np.int64),
         gains.ravel(),
         memory.ravel(),
         np.concatenate([_vehicle_row(v) for v in vehicles]),
