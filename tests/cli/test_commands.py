@@ -93,6 +93,7 @@ def test_version(cardume: Cardume) -> None:
         (["run", "a", "--seed", str(2**63)], "is not in the range"),
         (["run", "a", "--allow-code", "nowhere"], "does not exist"),
         (["new", "a.txt"], "a.txt: a mission file ends in .yaml; write: cardume new a.yaml"),
+        (["new", "."], ". is a directory; give a file in it, as mission.yaml"),
         (["new", "a.yaml", "--kind", "flet"], "'flet' is not one of 'single', 'fleet'"),
         (["list", "guidanc"], "There is no family 'guidanc'. Did you mean 'guidance'?"),
     ],

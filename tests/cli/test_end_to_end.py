@@ -137,3 +137,10 @@ def test_a_bad_mission_says_where_and_leaves_nothing(desk: Path, cardume: Cardum
     assert "bad.yaml:3:duraton" in err
     assert "duration" in err
     assert os.listdir() == ["bad.yaml"]
+
+
+def test_each_family_of_sensors_says_what_it_is(desk: Path, cardume: Cardume) -> None:
+    families = {family["name"]: family["summary"] for family in json.loads(cardume("list", "--json").out)}
+    sensors = [summary for name, summary in families.items() if name in ("gnss", "ahrs", "depth", "usbl", "dvl")]
+    assert all(sensors)
+    assert len(set(sensors)) == 5

@@ -539,3 +539,11 @@ def test_a_vehicle_holds_the_end_of_its_path_unless_told_otherwise(speed: float,
     assert bool("warning" in told(ALONE, "end", *overrides)) is is_carried_off
     beyond = fly(ALONE, *overrides).channels["coordination_state"][-1, 0] - 30.0
     assert bool(beyond > 10.0) is is_carried_off
+
+
+def test_a_path_file_that_cannot_be_read_is_laid_to_the_key_path(tmp_path: Path) -> None:
+    Path(tmp_path, "log.gpx").write_bytes(b"\x89HDF\0\0\0")
+    Path(tmp_path, "m.yaml").write_text(mission([POINT], path="{type: file, file: log.gpx}"))
+    (found,) = check_mission(open_mission(str(Path(tmp_path, "m.yaml"))))
+    assert (found.level, found.key) == ("error", "path")
+    assert "is a binary file" in found.message

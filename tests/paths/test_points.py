@@ -192,6 +192,12 @@ def test_points_that_make_no_path(build: object, said: str) -> None:
         build()  # type: ignore[operator]
 
 
+def test_a_spline_straight_back_has_a_cusp_and_is_refused_in_words_alone(recwarn: pytest.WarningsRecorder) -> None:
+    with pytest.raises(GeometryError, match="turns too sharply near north 10 m"):
+        spline([Center(0.0, 0.0), Center(10.0, 0.0), Center(0.0, 0.0)])
+    assert not recwarn.list
+
+
 def test_huge_coordinates_still_make_a_path() -> None:
     far = [Center(1e6 + p.north, -2e6 + p.east) for p in POINTS]
     assert length_of(spline(far)) == pytest.approx(length_of(spline(POINTS)), rel=1e-9)

@@ -76,7 +76,9 @@ def _families() -> list[dict[str, Any]]:
 
 
 def _about(law: Any) -> str:
-    """The first line of the room that a law stands in."""
+    """The first line of the room that a law stands in; of a sensor, whose room holds many families, its own."""
+    if KEYS.get(law.family, "") == f"sensors.{law.family}":
+        return str(describe(law)["summary"])
     package = law.__module__.rpartition(".")[0]
     return (getattr(sys.modules.get(package), "__doc__", None) or "").strip().partition("\n")[0]
 

@@ -25,6 +25,10 @@ MISSION_ENDINGS = (".yaml", ".yml")
 def new(file: Path, kind: str, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
     """Write a commented mission to FILE that flies as it is. An existing file is left alone."""
     del allow_code
+    if file.is_dir():
+        raise InputError(
+            f"{printable(str(file))} is a directory; give a file in it, as {printable(str(file / 'mission.yaml'))}"
+        )
     if file.suffix.lower() not in MISSION_ENDINGS:
         named = printable(str(file.with_suffix(".yaml")))
         raise InputError(f"{printable(str(file))}: a mission file ends in .yaml; write: cardume new {named}")

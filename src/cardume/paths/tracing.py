@@ -84,12 +84,13 @@ def _piece(curve: Trace, low: float, high: float) -> Segment | None:
         return None
     wanted = length * np.concatenate([NODES, BETWEEN])
     t = low + (high - low) * np.concatenate([NODES, BETWEEN])
-    for _ in range(30):
-        slopes = np.linalg.norm(curve.derivative(t), axis=1)
-        step = (_lengths(curve, low, t) - wanted) / slopes
-        t = np.clip(t - step, low, high)
-        if abs(step * slopes).max() < 1e-14 * length:
-            break
+    with np.errstate(divide="ignore", invalid="ignore"):  # a cusp has no slope there; its turn is refused below
+        for _ in range(30):
+            slopes = np.linalg.norm(curve.derivative(t), axis=1)
+            step = (_lengths(curve, low, t) - wanted) / slopes
+            t = np.clip(t - step, low, high)
+            if abs(step * slopes).max() < 1e-14 * length:
+                break
     north, east = curve.derivative(t).T
     courses = np.arctan2(east, north)
     turned = np.arctan2(np.sin(courses - courses[0]), np.cos(courses - courses[0]))

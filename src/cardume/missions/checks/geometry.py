@@ -88,7 +88,7 @@ def _misfits(mission: Mission, segments: list[Segment]) -> Iterator[Finding]:
 
 
 def _as_finding(problem: Problem) -> Finding:
-    return Finding("error", problem.position.key, _placed(problem.position, problem.message))
+    return Finding("error", problem.position.key or "path", _placed(problem.position, problem.message))
 
 
 def _placed(position: Position, message: str) -> str:
