@@ -70,14 +70,19 @@ def _every_law() -> Mapping[str, Mapping[str, Any]]:
 
 def _families() -> list[dict[str, Any]]:
     return [
-        {"name": name, "summary": _about(next(iter(laws.values()))), "key": KEYS.get(name, name), "laws": list(laws)}
+        {
+            "name": name,
+            "summary": _about(name, next(iter(laws.values()))),
+            "key": KEYS.get(name, name),
+            "laws": list(laws),
+        }
         for name, laws in _every_law().items()
     ]
 
 
-def _about(law: Any) -> str:
+def _about(family: str, law: Any) -> str:
     """The first line of the room that a law stands in; of a sensor, whose room holds many families, its own."""
-    if KEYS.get(law.family, "") == f"sensors.{law.family}":
+    if KEYS.get(family) == f"sensors.{family}":
         return str(describe(law)["summary"])
     package = law.__module__.rpartition(".")[0]
     return (getattr(sys.modules.get(package), "__doc__", None) or "").strip().partition("\n")[0]
