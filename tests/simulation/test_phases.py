@@ -168,6 +168,23 @@ def test_nobody_knows_that_another_is_ready_before_a_message_says_so() -> None:
     assert phases(fast, "near")[:3] == [READY, ASSEMBLED, GO]
 
 
+@pytest.mark.parametrize("delay", [0.4, 3.0])
+def test_to_be_seen_by_a_usbl_is_not_to_have_said_that_one_is_there(delay: float) -> None:
+    """The head sees both divers each second, from before their first word on, and its sightings overtake late words."""
+    seen = FLEET.replace(
+        "{name: hub}", "{name: hub, sensors: {gnss: {sigma: 0}, usbl: {}, ahrs: {}, depth: {}, thruster_speed: {}}}"
+    )
+    slow = "messaging: {schedule: periodic, period: 3 s, offset: 2 s}\n"
+    late = f"phases: {{gather: {{radius: 1 m}}}}\nacoustics: {{channel: bernoulli, loss: 0, delay: {delay} s}}\n"
+    mission = HEAD.replace("messaging: {schedule: periodic, period: 1 s}\n", slow).replace("60 s", "45 s")
+    flight = fly_mission(parse_mission(mission + seen + late, catalog()))
+    there = happened(flight, "late", "is at its start")
+    assert there > 5.0
+    starts = [happened(flight, name, "sets out") for name in flight.vehicle_names]
+    assert there + delay < min(starts)
+    assert max(starts) < there + 4.0 * (3.0 + delay)  # four messages later at most
+
+
 def test_the_summary_and_the_sentences_tell_it() -> None:
     lines = SQUARE + "abort: {to: hold}\n"
     mission = parse_mission(

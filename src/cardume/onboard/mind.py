@@ -9,6 +9,7 @@ from cardume.signals import NOTHING, DvlReading, Report, Sighting, Water
 
 LONG_AGO = -1e9  # [s] before any mission
 NEVER = 1e9  # [s] after any mission; [m] beyond any depth
+UNTOLD = -1.0  # [-] phase of one that has not said it: below them all
 
 # The whole numbers of `Mind.features`: what of phases.py, pace.py and depths.py a vehicle's mission asks for.
 (
@@ -128,7 +129,7 @@ class News(NamedTuple):
     state: float = NOTHING  # [m] its coordination state
     path_speed: float = 0.0  # [m/s] and the rate of that
     time_of_validity: float = LONG_AGO  # [s]
-    phase: float = 4.0  # [-] of its mission, as it last said
+    phase: float = UNTOLD  # [-] the latest of its mission that it said
 
 
 class Fresh(NamedTuple):

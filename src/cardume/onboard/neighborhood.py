@@ -38,7 +38,7 @@ from cardume.onboard.mind import (
     sighting_in,
 )
 from cardume.onboard.pace import pace_gained, pace_of_neighbor
-from cardume.onboard.phases import is_waiting, takes_part
+from cardume.onboard.phases import has_told, is_waiting, takes_part
 from cardume.paths.projection import project
 from cardume.signals import (
     NOTHING,
@@ -83,20 +83,21 @@ def listen(mind: Mind, heard: Rows) -> None:
 
 @compiled
 def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
-    """Learn a vehicle's coordination state from a message, its own or a sighting, if that is newer."""
+    """Learn a vehicle's coordination state from a message, its own or a sighting, if that is newer, and its phase.
+
+    Phases only follow one another, so that a message which a sighting has overtaken still tells a later one.
+    """
     if sender == vehicle:
         head = head_of(message)
         learnt = News(head.coordination_state, head.path_speed, head.time_of_validity, head.phase)
     else:
         seen = sighting_in(message, vehicle)
         learnt = News(seen.coordination_state, seen.path_speed, seen.time_of_validity, seen.phase)
-    learn(mind, vehicle, is_fresh(message) & (learnt.time_of_validity > time_of_news(mind, vehicle)), learnt)
-
-
-@compiled
-def time_of_news(mind: Mind, vehicle: int) -> float:
-    """When what was last learnt of a vehicle was valid [s]."""
-    return get_news(mind.others, vehicle).time_of_validity
+    before, is_read = get_news(mind.others, vehicle), is_fresh(message)
+    phase = where(is_read & (learnt.phase > before.phase), learnt.phase, before.phase)
+    put_news(mind.others, vehicle, News(before.state, before.path_speed, before.time_of_validity, phase))
+    is_new = is_read & (learnt.time_of_validity > before.time_of_validity)
+    learn(mind, vehicle, is_new, News(learnt.state, learnt.path_speed, learnt.time_of_validity, phase))
 
 
 @compiled
@@ -192,7 +193,7 @@ def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) ->
     is_known = news.state == news.state
     path_speed = news.path_speed + pace_gained(mind, news.time_of_validity, time)
     if load(mind.features, HAS_PHASES) > 0:
-        waits = is_waiting(news.phase)
+        waits = is_waiting(news.phase) & has_told(news.phase)
         nominal, expected = where(waits, 0.0, nominal), where(waits, 0.0, expected)
         is_known = is_known & takes_part(news.phase)
     heard_last = NeighborReport(is_new, news.state, path_speed, age, nominal, expected)

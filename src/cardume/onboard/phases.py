@@ -1,6 +1,6 @@
 """Phases of a mission aboard one vehicle: down, wait for the others, along the path, wait at its end, up; or give up.
 
-    DIVE -> GATHER -> READY -> ASSEMBLED -> GO -> HOLD -> SURFACE,   and from each of them ABORT
+    DIVE -> GATHER -> READY -> ASSEMBLED -> GO -> HOLD -> SURFACE,   and from each of them but SURFACE ABORT
 
 A vehicle is READY when it is at its start.  It is ASSEMBLED when all that it hears have said that they are READY, and
 goes when all that it hears have said that they are ASSEMBLED, or one that it is gone: so nobody within two hops
@@ -48,6 +48,12 @@ BEND = 0.5  # [-] of the circle's radius: lookahead with which it is followed
 def is_waiting(phase: float) -> bool:
     """Whether a vehicle in this phase [-] has not set out yet."""
     return phase < GO - HALF
+
+
+@compiled
+def has_told(phase: float) -> bool:
+    """Whether a vehicle has ever said its phase [-]; to be seen by a USBL says nothing of it."""
+    return phase > DIVE - HALF
 
 
 @compiled
@@ -132,8 +138,7 @@ def what_others_say(mind: Mind) -> tuple[float, bool]:
     listed, me = neighbors_of(mind, mind.me), get_progress(mind.own, 0).phase
     least, is_gone = ABORT + 0.0 * me, me != me
     for k in range(1, load(listed, 0) + 1):
-        known = get_news(mind.others, load(listed, k))
-        said = where(known.state == known.state, known.phase, DIVE)
+        said = get_news(mind.others, load(listed, k)).phase
         least = where(said < least, said, least)
         is_gone = is_gone | ((said > GO - HALF) & takes_part(said))
     return least, is_gone
