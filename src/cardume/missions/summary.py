@@ -146,20 +146,36 @@ def read_summary(directory: Path) -> dict[str, Any]:
         DataError: missing, damaged, or not written by cardume.
     """
     path = directory / FILE_NAME
+    found = read_kept(path, "cardume_summary", "a run", "fly the mission again")
+    if found["cardume_summary"] != FORMAT_VERSION:
+        said = printable(str(found["cardume_summary"]))[:40]
+        raise DataError(f"{printable(str(path))} has format {said}; this cardume reads format {FORMAT_VERSION}")
+    return found
+
+
+def read_kept(path: Path, mark: str, what: str, again: str) -> dict[str, Any]:
+    """A JSON file of ours, which lists the `files` that were written beside it.
+
+    Args:
+        path: of the file.
+        mark: the key by which it is known as ours.
+        what: its directory is the directory of.
+        again: what to do where it is damaged.
+
+    Raises:
+        DataError: missing, damaged, or not written by cardume.
+    """
     name = printable(str(path))
     try:
         found = json.loads(path.read_bytes())
     except OSError as problem:
-        raise DataError(f"{name} cannot be read: {problem.strerror}; give the directory of a run") from None
+        raise DataError(f"{name} cannot be read: {problem.strerror}; give the directory of {what}") from None
     except (ValueError, RecursionError):
-        raise DataError(f"{name} is damaged: it is not JSON; fly the mission again") from None
-    if not isinstance(found, dict) or "cardume_summary" not in found:
-        raise DataError(f"{name} was not written by cardume; give the directory of a run")
-    if found["cardume_summary"] != FORMAT_VERSION:
-        said = printable(str(found["cardume_summary"]))[:40]
-        raise DataError(f"{name} has format {said}; this cardume reads format {FORMAT_VERSION}")
+        raise DataError(f"{name} is damaged: it is not JSON; {again}") from None
+    if not isinstance(found, dict) or mark not in found:
+        raise DataError(f"{name} was not written by cardume; give the directory of {what}")
     if not is_list_of_files(found):
-        raise DataError(f"{name} is damaged: its 'files' is no list of names; fly the mission again")
+        raise DataError(f"{name} is damaged: its 'files' is no list of names; {again}")
     return found
 
 

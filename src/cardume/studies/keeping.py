@@ -7,19 +7,16 @@ DIR/compare.png     and .svg, what the caller draws
 
 import csv
 import io
-import json
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cardume.errors import DataError
 from cardume.missions.results import Destination, choose_destination, write_atomically
-from cardume.missions.summary import is_list_of_files
+from cardume.missions.summary import read_kept, to_json
 from cardume.simulation.flight import METRICS
 from cardume.studies.comparing import Comparison, value_of
 from cardume.studies.statistics import Estimate
-from cardume.units import printable
 
 FORMAT_VERSION = 1
 FILE_NAME = "compare.json"
@@ -71,7 +68,7 @@ def keep_comparison(
             draw(folder)
         files = sorted([*(path.name for path in folder.iterdir()), FILE_NAME])
         summary = summarize_comparison(comparison, words=words, version=version, files=files)
-        (folder / FILE_NAME).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        (folder / FILE_NAME).write_text(to_json(summary), encoding="utf-8")
         return summary
 
     return write_atomically(destination, name, fill)
@@ -86,19 +83,7 @@ def read_comparison(directory: Path) -> dict[str, Any]:
     Raises:
         DataError: missing, damaged, or not written by cardume.
     """
-    path = directory / FILE_NAME
-    name = printable(str(path))
-    try:
-        found = json.loads(path.read_bytes())
-    except OSError as problem:
-        raise DataError(f"{name} cannot be read: {problem.strerror}; give the directory of a comparison") from None
-    except (ValueError, RecursionError):
-        raise DataError(f"{name} is damaged: it is not JSON; compare again") from None
-    if not isinstance(found, dict) or "cardume_compare" not in found:
-        raise DataError(f"{name} was not written by cardume; give the directory of a comparison")
-    if not is_list_of_files(found):
-        raise DataError(f"{name} is damaged: its 'files' is no list of names; compare again")
-    return found
+    return read_kept(directory / FILE_NAME, "cardume_compare", "a comparison", "compare again")
 
 
 def to_csv(comparison: Comparison) -> str:
