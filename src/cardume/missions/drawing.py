@@ -20,9 +20,10 @@ from cardume.missions.mission import Mission
 from cardume.missions.rules import check_rules
 
 MOST_PROBES = 500
+NONE: Mapping[str, float] = {}
 
 
-def draw(mission: Mission, seed: int | None = None) -> Mission:
+def draw(mission: Mission, seed: int | None = None, chances: Mapping[str, float] = NONE) -> Mission:
     """The mission that a seed gives: every distribution replaced by a value.
 
     u = Philox(sha256(seed, key)) in (0, 1); then the inverse of the distribution at u.
@@ -30,21 +31,37 @@ def draw(mission: Mission, seed: int | None = None) -> Mission:
     Args:
         mission: without sweeps.
         seed: what to draw with, and the seed of the mission drawn; None for the mission's own.
+        chances: u of keys for which another sampling than chance chose it.
+
+    Raises:
+        MissionError: the mission holds a sweep, or the values drawn do not fit one another.
+    """
+    return draw_told(mission, mission.seed if seed is None else seed, chances)[0]
+
+
+def draw_told(mission: Mission, seed: int, chances: Mapping[str, float] = NONE) -> tuple[Mission, dict[str, Any]]:
+    """What `draw` gives, and each value drawn by the key under which it varies.
+
+    Args:
+        mission: without sweeps.
+        seed: what to draw with, and the seed of the mission drawn.
+        chances: u of keys for which another sampling than chance chose it.
 
     Raises:
         MissionError: the mission holds a sweep, or the values drawn do not fit one another.
     """
     refuse_sweeps(mission)
-    seed = mission.seed if seed is None else seed
+    told: dict[str, Any] = {}
 
     def visit(key: str, value: Any) -> Any:
         if isinstance(value, (Uniform, Normal, Choose)):
-            return _at(value, _chance(seed, shared_key(key, value)))
+            name = shared_key(key, value)
+            told[name] = value = _at(value, chances[name] if name in chances else _chance(seed, name))
         return value
 
     drawn: Mission = dataclasses.replace(rebuild(mission, visit), seed=seed)
     check_rules(drawn)
-    return drawn
+    return drawn, told
 
 
 def sweeps_of(mission: Mission) -> dict[str, Sweep]:

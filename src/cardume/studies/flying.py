@@ -2,14 +2,16 @@
 
 import math
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from cardume.compiler import WIDTH
 from cardume.missions.available import catalog
 from cardume.missions.catalog import Catalog
-from cardume.missions.drawing import draw
+from cardume.missions.drawing import draw, draw_told
 from cardume.missions.flying import failure_of
 from cardume.missions.mission import Mission
 from cardume.missions.planning import make_plan
@@ -19,6 +21,9 @@ from cardume.simulation.fly import Flown, fly_batch
 from cardume.simulation.plan import Plan
 from cardume.simulation.results import metrics_of
 from cardume.simulation.warming import warm_up
+from cardume.studies.run_table import Numbers, RunTable, tabulate
+
+__all__ = ["LANES_FROM", "Progress", "Run", "RunTable", "fly_all", "fly_seeds", "num_processors"]
 
 Progress = Callable[[str, int, int], None]
 
@@ -85,6 +90,75 @@ def fly_all(
             runs += more
         progress("compare", len(missions) * len(found[0]), total)
     return found
+
+
+def fly_seeds(
+    mission: Mission,
+    seeds: Sequence[int] | np.ndarray,
+    *,
+    chances: Mapping[str, np.ndarray] | None = None,
+    allow_code: Iterable[str | Path] = (),
+    threads: int | None = None,
+    lanes: bool | None = None,
+    should_stop: Callable[[], bool] = lambda: False,
+    progress: Progress = lambda stage, done, total: None,
+) -> RunTable:
+    """Fly one mission with many seeds, for its numbers only; these do not depend on how the work was cut.
+
+    Args:
+        mission: without sweeps.
+        seeds: (n,) by which distributions and noise are drawn.
+        chances: for keys of distributions (n,) numbers in (0, 1) from which their values are made, in the place of
+            those that the seed gives: a Latin hypercube, say.
+        allow_code: folders from which laws may be imported.
+        threads: how many at once; None for as many as there are processors.
+        lanes: whether eight missions share a register; None where that saves time.
+        should_stop: asked every few milliseconds.
+        progress: called with "compile" or "fly", how much is done, and how much there is.
+
+    Returns:
+        A row for each seed; after a stop for the first of them only, those that were flown.
+
+    Raises:
+        InputError: a mission that cannot be flown.
+    """
+    known, threads, chances = catalog(allow_code), threads or num_processors(), chances or {}
+    if len(seeds) == 0:
+        return tabulate(mission, [])
+    given = [{key: float(values[k]) for key, values in chances.items()} for k in range(len(seeds))]
+    first = _drawn_plan(mission, int(seeds[0]), given[0], known)[0]
+    warm_up(first, lambda done, total: progress("compile", done, total))
+    if lanes is None:
+        lanes = first.num_ticks * len(first.vehicles) * len(seeds) >= LANES_FROM
+    found: list[Numbers] = []
+    portion = (WIDTH if lanes else 4) * threads
+    progress("fly", 0, len(seeds))
+    for start in range(0, len(seeds), portion):
+        some = range(start, min(start + portion, len(seeds)))
+        pairs = [_drawn_plan(mission, int(seeds[k]), given[k], known) for k in some]
+        plans = [plan for plan, _ in pairs]
+        if lanes:
+            flown = _fly_together(plans, threads, should_stop)
+        else:
+            flown = fly_batch(plans, threads, should_stop=should_stop)
+        if should_stop():
+            break  # what a stopped mission leaves is no number of a whole one
+        found += [_numbers(one, told) for one, (_, told) in zip(flown, pairs, strict=True)]
+        progress("fly", len(found), len(seeds))
+    return tabulate(mission, found)
+
+
+def _drawn_plan(
+    mission: Mission, seed: int, chances: Mapping[str, float], known: Catalog
+) -> tuple[Plan, dict[str, object]]:
+    drawn, told = draw_told(mission, seed, chances)
+    return replace(make_plan(drawn, known).plan, log_period=0.0), told
+
+
+def _numbers(flown: Flown, drawn: Mapping[str, object]) -> Numbers:
+    if (trouble := flown.trouble) is not None:
+        return Numbers(flown.plan.seed, drawn, Metrics(), failure_of(trouble), trouble.time)
+    return Numbers(flown.plan.seed, drawn, metrics_of(flown), "", math.nan)
 
 
 def num_processors() -> int:

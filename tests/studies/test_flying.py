@@ -1,0 +1,79 @@
+"""Many seeds of one mission: every number is that of the mission flown alone."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import cardume
+from cardume.missions.available import catalog
+from cardume.missions.drawing import draw
+from cardume.missions.loading import parse_mission
+from cardume.missions.mission import Mission
+from cardume.studies.flying import RunTable, fly_seeds
+from studies.missions import NOISY
+
+DRAWN = NOISY.replace("speed: 0.1 m/s, towards", "speed: {uniform: [0 m/s, 0.2 m/s]}, towards")
+
+
+def read(text: str, *overrides: str) -> Mission:
+    return parse_mission(text, catalog(), overrides)
+
+
+def check_alone(mission: Mission, table: RunTable) -> None:
+    """Every row against the mission flown by itself."""
+    for k, seed in enumerate(table.seeds):
+        alone = cardume.fly(draw(mission, int(seed))).metrics
+        for name in alone.fleet | next(iter(alone.vehicles.values())):
+            assert np.array_equal(table.metrics[f"fleet_{name}"][k], alone.worst(name)[0], equal_nan=True), name
+            if name in table.metrics:
+                own = [alone.vehicles[v.name][name] for v in mission.vehicles]
+                assert np.array_equal(table.metrics[name][k], own, equal_nan=True), name
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+def test_a_row_is_the_mission_flown_alone(lanes: bool) -> None:
+    mission = read(DRAWN, "require={cross_track_max: 1 m}")
+    table = fly_seeds(mission, [4, 2, 11], lanes=lanes)
+    assert table.seeds.tolist() == [4, 2, 11]
+    assert table.requirements == ("cross_track_max <= 1 m",)
+    assert (table.got[:, 0] == table.metrics["fleet_cross_track_max"]).all()
+    assert (table.met[:, 0] == (table.got[:, 0] <= 1.0)).all()
+    assert table.failure == ("", "", "")
+    assert np.isnan(table.failed_at).all()
+    speeds = [draw(mission, seed).current.parameters["speed"] for seed in (4, 2, 11)]
+    assert table.drawn["current.speed"].tolist() == speeds
+    check_alone(mission, table)
+
+
+def test_chances_take_the_place_of_those_that_the_seed_gives() -> None:
+    mission = read(DRAWN)
+    table = fly_seeds(mission, [1, 2], chances={"current.speed": np.array([0.25, 0.75])})
+    assert table.drawn["current.speed"].tolist() == [0.05, pytest.approx(0.15)]
+    other = fly_seeds(mission, [1, 2])
+    assert not (table.metrics["cross_track_max"] == other.metrics["cross_track_max"]).any()
+
+
+def test_laws_that_are_drawn_are_told_by_name() -> None:
+    laws = "guidance={choose: [{law: arcsine}, {law: line_of_sight, lookahead: {uniform: [2 m, 4 m]}}]}"
+    mission = read(DRAWN, laws)
+    table = fly_seeds(mission, range(1, 7))
+    assert set(table.drawn["guidance"]) == {"arcsine", "line_of_sight"}
+    assert (np.isnan(table.drawn["guidance.lookahead"]) == (table.drawn["guidance"] == "arcsine")).all()
+    check_alone(mission, table)
+
+
+def test_nothing_is_required_and_nothing_flown() -> None:
+    table = fly_seeds(read(NOISY), [])
+    assert (len(table), table.requirements, table.got.shape) == (0, (), (0, 0))
+    told: list[tuple[str, int, int]] = []
+    stopped = fly_seeds(
+        read(NOISY),
+        range(40),
+        progress=lambda *what: told.append(what),
+        should_stop=lambda: bool(told) and told[-1][0] == "fly" and told[-1][1] >= 8,
+    )
+    assert 8 <= len(stopped) < 40
+    assert math.isfinite(stopped.metrics["fleet_energy"][-1])
