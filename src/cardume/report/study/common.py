@@ -87,7 +87,7 @@ def percent(share: float, digits: int = 3) -> str:
     """
     if not math.isfinite(share):
         return "-"
-    if share in (0.0, 1.0):
+    if share < 1e-9 or share > 1.0 - 1e-9:
         return f"{100.0 * share:.0f} %"
     text = f"{100.0 * share:.{digits}g}"
     if float(text) >= 100.0:

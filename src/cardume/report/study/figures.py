@@ -29,7 +29,7 @@ STUDY_FIGURES: Mapping[str, StudyFigure] = {
     "distributions": StudyFigure(
         draw_distributions, has_distributions, "no metric has a number, or there are many cases"
     ),
-    "requirements": StudyFigure(draw_requirements, has_requirements, "nothing is required, or there are many cases"),
+    "requirements": StudyFigure(draw_requirements, has_requirements, "nothing is required, or cases are many"),
     "influences": StudyFigure(draw_influences, has_influences, "nothing is drawn or swept, or there are few runs"),
     "curves": StudyFigure(draw_curves, has_curves, "no numbers are swept, or too many other keys are"),
     "map": StudyFigure(draw_map, has_map, "it takes two swept keys of numbers"),

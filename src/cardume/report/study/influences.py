@@ -28,14 +28,15 @@ def draw_influences(study: Any, width: float = style.WIDTH) -> Any:
     found = all_influences(results)
     with style.styled():
         heights = [0.55 + ROW * min(len(one.inputs), MOST_INPUTS) for one in found]
-        figure = style.new_figure(width, sum(heights) + 0.3)
+        figure = style.new_figure(width, sum(heights) + 0.45)
         figure.set_layout_engine("constrained")
         panels = figure.subplots(len(found), 2, squeeze=False, width_ratios=(1.5, 1.0), height_ratios=heights)
         for row, one in enumerate(found):
             _draw_shares(panels[row, 0], one)
             _draw_ranks(panels[row, 1], one)
-        panels[-1, 0].set_xlabel(f"% of the variance; {LEGEND}" if width > 5.0 else "% of the variance")
+        panels[-1, 0].set_xlabel("% of the variance")
         panels[-1, 1].set_xlabel("rank correlation (Spearman)")
+        figure.supxlabel(LEGEND, fontsize=6.5, color=style.INK)
         return figure
 
 

@@ -22,6 +22,8 @@ COLORS = "cividis"  # told apart by the color-blind, and in gray
 ROW = 2.35  # [inch] of a map
 MOST_WRITTEN = 64  # cells with their numbers in them
 SURE, SURELY_NOT = "o", "x"
+UNEVEN = 2.5  # the widest gap between options over the narrowest, from which they are drawn one after the other
+MOST_TICKS = 12
 LEGEND = "white line: 95 %, dashed: both ends of its interval; dot: surely holds so often, cross: surely not"
 
 
@@ -47,23 +49,23 @@ def draw_map(study: Any, width: float = style.WIDTH, keys: tuple[str, str] | Non
         figure = style.new_figure(width, ROW * len(means) + 0.35)
         figure.set_layout_engine("constrained")
         panels = figure.subplots(len(means), columns, squeeze=False, sharex=True, sharey=True)
-        factors = [axis_of(results, key) for key in (x, y)]
+        scales = [Scale(results, key) for key in (x, y)]
         limits = [float(np.nanmin([one.middle for one in means])), float(np.nanmax([one.middle for one in means]))]
         for row, one in enumerate(means):
-            drawn = _draw_cells(panels[row, -1], one, factors, limits, "{:.3g}", 1.0)
+            drawn = _draw_cells(panels[row, -1], one, scales, limits, "{:.3g}", 1.0)
             dress(panels[row, -1], _title(title_of(metric), one))
             figure.colorbar(drawn, ax=panels[row, -1])
         for row, chance in enumerate(chances):
-            drawn = _draw_cells(panels[row, 0], chance, factors, [0.0, 100.0], "{:.0f}", 100.0)
-            _draw_boundary(panels[row, 0], chance, factors)
+            drawn = _draw_cells(panels[row, 0], chance, scales, [0.0, 100.0], "{:.0f}", 100.0)
+            _draw_boundary(panels[row, 0], chance, scales)
             dress(panels[row, 0], _title("all required holds [%]", chance))
             figure.colorbar(drawn, ax=panels[row, 0])
         for panel in panels.ravel():
             panel.grid(visible=False)
         for panel in panels[-1]:
-            panel.set_xlabel(factors[0][1])
+            scales[0].mark(panel.xaxis)
         for panel in panels[:, 0]:
-            panel.set_ylabel(factors[1][1])
+            scales[1].mark(panel.yaxis)
         if chances:
             figure.supxlabel(LEGEND if width > 6.0 else LEGEND.replace("; ", "\n"), fontsize=6.5, color=style.INK)
         return figure
@@ -78,50 +80,74 @@ def has_map(results: Results) -> bool:
     return len(numeric_keys(results)) > 1 and bool(results.shown)
 
 
-def edges_of(centers: np.ndarray) -> np.ndarray:
-    """(n + 1,) the edges of cells around their centers (n,), in the middle between them.
+class Scale:
+    """Where the options of a key are drawn: at their numbers, or, where these are unevenly spaced, one after the other.
 
-    Args:
-        centers: in ascending order, two at least.
+    Attributes:
+        numbers: (option,) in ascending order, SI.
+        places: (option,) on the axis.
+        edges: (option + 1,) of their cells, on the axis.
     """
-    middle = 0.5 * (centers[1:] + centers[:-1])
-    first, last = 2.0 * centers[0] - middle[0], 2.0 * centers[-1] - middle[-1]
-    return np.concatenate([[first], middle, [last]])
+
+    def __init__(self, results: Results, key: str) -> None:
+        factor, self.name = axis_of(results, key)
+        self.numbers = np.sort(np.asarray(results.numbers(key)))
+        gaps = np.diff(self.numbers)
+        self.is_even = bool(gaps.max() <= UNEVEN * gaps.min())
+        self.labels = [f"{factor * number:.4g}" for number in self.numbers]
+        self.places = factor * self.numbers if self.is_even else np.arange(float(len(self.numbers)))
+        middle = 0.5 * (self.places[1:] + self.places[:-1])
+        self.edges = np.concatenate([[2.0 * self.places[0] - middle[0]], middle, [2.0 * self.places[-1] - middle[-1]]])
+
+    def place(self, numbers: np.ndarray) -> np.ndarray:
+        """Where numbers between the options lie on the axis.
+
+        Args:
+            numbers: (n,) SI.
+        """
+        found: np.ndarray = np.interp(numbers, self.numbers, self.places)
+        return found
+
+    def mark(self, axis: Any) -> None:
+        """Name an axis, and say where the options are.
+
+        Args:
+            axis: of matplotlib.
+        """
+        axis.set_label_text(self.name)
+        stride = -(-len(self.labels) // MOST_TICKS)
+        axis.set_ticks(self.places[::stride], self.labels[::stride])
 
 
 def _title(what: str, one: Map) -> str:
     return f"{what}, {one.label}" if one.label else what
 
 
-def _draw_cells(
-    axes: Any, one: Map, factors: list[tuple[float, str]], limits: list[float], form: str, scale: float
-) -> Any:
-    x, y = factors[0][0] * one.x, factors[1][0] * one.y
-    values = scale * one.middle
-    drawn = axes.pcolormesh(edges_of(x), edges_of(y), values, cmap=COLORS, vmin=limits[0], vmax=limits[1], lw=0.0)
+def _draw_cells(axes: Any, one: Map, scales: list[Scale], limits: list[float], form: str, factor: float) -> Any:
+    values = factor * one.middle
+    x, y = scales
+    drawn = axes.pcolormesh(x.edges, y.edges, values, cmap=COLORS, vmin=limits[0], vmax=limits[1], lw=0.0)
     if values.size <= MOST_WRITTEN:
         dark = limits[0] + 0.55 * (limits[1] - limits[0])
         for (row, column), value in np.ndenumerate(values):
             if np.isfinite(value):
-                color = "white" if value < dark else "black"
-                axes.text(x[column], y[row], form.format(value), ha="center", va="center", fontsize=6.0, color=color)
+                how = {"ha": "center", "va": "center", "fontsize": 6.0, "color": "white" if value < dark else "black"}
+                axes.text(x.places[column], y.places[row], form.format(value), **how)
     return drawn
 
 
-def _draw_boundary(axes: Any, chances: Map, factors: list[tuple[float, str]]) -> None:
+def _draw_boundary(axes: Any, chances: Map, scales: list[Scale]) -> None:
     import matplotlib.patheffects as effects
 
     outline = [effects.Stroke(linewidth=2.6, foreground="black"), effects.Normal()]
-    scale = np.array([factors[0][0], factors[1][0]])
     for name, lines in boundary(chances, WANTED).items():
-        dashes: Any = () if name == "middle" else (2.5, 1.5)
+        is_middle = name == "middle"
+        how = {"color": "white", "lw": 1.6 if is_middle else 1.1, "dashes": () if is_middle else (2.5, 1.5)}
         for line in lines:
-            drawn = (line * scale).T
-            axes.plot(*drawn, color="white", lw=1.6 if name == "middle" else 1.1, dashes=dashes, path_effects=outline)
-    sure = verdicts(chances, WANTED)
-    offset = 0.32 * np.diff(edges_of(factors[1][0] * chances.y))
-    for (row, column), value in np.ndenumerate(sure):
+            axes.plot(scales[0].place(line[:, 0]), scales[1].place(line[:, 1]), path_effects=outline, **how)
+    below = 0.33 * np.diff(scales[1].edges)
+    for (row, column), value in np.ndenumerate(verdicts(chances, WANTED)):
         if value:
-            mark = SURE if value > 0 else SURELY_NOT
-            place = factors[0][0] * chances.x[column], factors[1][0] * chances.y[row] - offset[row]
-            axes.plot(*place, mark, ms=2.6, color="black" if chances.middle[row, column] > 0.55 else "white", mew=0.8)
+            color = "black" if chances.middle[row, column] > 0.55 else "white"
+            place = scales[0].places[column], scales[1].places[row] - below[row]
+            axes.plot(*place, SURE if value > 0 else SURELY_NOT, ms=2.6, color=color, mew=0.8)

@@ -77,18 +77,8 @@ def panels(results: Results, along: Sequence[str]) -> Iterator[tuple[str, tuple[
     sizes = [results.shape[results.swept.index(key)] for key in others]
     for places in np.ndindex(*sizes):
         chosen = dict(zip(others, places, strict=True))
-        label = ", ".join(f"{short(key)} {results.labels(key)[place]}" for key, place in chosen.items())
+        label = ", ".join(f"{key} {results.labels(key)[place]}" for key, place in chosen.items())
         yield label, tuple(chosen.get(key, slice(None)) for key in results.swept)
-
-
-def short(key: str) -> str:
-    """A key without its section, as `speed` of `current.speed`; laws keep it.
-
-    Args:
-        key: of a mission file.
-    """
-    section, _, last = key.rpartition(".")
-    return section or last if last in ("law", "type", "model") else last
 
 
 def curves(results: Results, key: str, metric: str) -> tuple[Curve, ...]:
