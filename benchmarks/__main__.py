@@ -9,6 +9,7 @@ from rich.console import Console
 from benchmarks import batch, families, first_compilation, single_mission, users_law, whole_command
 from benchmarks.calibration import Calibration
 from benchmarks.display import Display
+from benchmarks.reference import measure as reference
 from benchmarks.row import Row, load, run_record, save
 from benchmarks.table import compare, show
 from benchmarks.timing import Effort
@@ -20,6 +21,7 @@ WORKLOADS = {
     "law": users_law.measure,
     "batch": batch.measure,
     "families": families.measure,
+    "reference": reference.measure,
 }
 WIDTH = 120  # of tables where there is no terminal
 SMOKE_STEPS = 400  # of the calibration loop

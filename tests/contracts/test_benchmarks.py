@@ -20,6 +20,7 @@ CASES = {
         for fleet in ("figure-5", "figure-5, kinematic", "simplest laws")
         for threads in ("1 thread", "2 threads")
     ],
+    "reference": ["one mission alone", "scalar, 2 threads"],
     "families": ["ideal sensors", "observer", "crab", "coordination", "noisy", "bernoulli", "medusa"],
 }
 
