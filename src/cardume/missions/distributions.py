@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, is_dataclass, replace
 from typing import Any
 
-from cardume.missions.schema import ANY, Bounds, Laws, fields_of
+from cardume.missions.schema import ANY, Bounds, Field, Laws, fields_of
 from cardume.missions.tree import join
 from cardume.missions.vehicle import LawChoice, Table, Vehicle
 
@@ -58,14 +58,7 @@ def rebuild(value: Any, visit: Callable[[str, Any], Any], key: str = "") -> Any:
     if isinstance(value, tuple):
         return tuple(rebuild(item, visit, join(key, _item_key(item, index))) for index, item in enumerate(value))
     fields = fields_of(type(value)) if is_dataclass(value) else ()
-    changes = {
-        field.key: rebuild(
-            getattr(value, field.key),
-            visit,
-            key if isinstance(field.kind, Laws) and field.kind.inlined else join(key, field.key),
-        )
-        for field in fields
-    }
+    changes = {field.key: rebuild(getattr(value, field.key), visit, _field_key(key, field)) for field in fields}
     return replace(value, **changes) if changes else value
 
 
@@ -87,11 +80,43 @@ def varying_values(record: Any) -> list[tuple[str, Varying]]:
     return list(found.items())
 
 
+def units_of_varying(value: Any, key: str = "", unit: str = "") -> Iterator[tuple[str, Varying, str]]:
+    """Every value that varies, also inside the options of another, with its shared key and its SI unit.
+
+    Args:
+        value: a record.
+        key: under which it stands.
+        unit: that it has, if it is a quantity.
+
+    Yields:
+        Key, value and unit; a key as often as it stands there.
+    """
+    if isinstance(value, Varying):
+        yield shared_key(key, value), value, unit
+        items = [(key, option, unit) for option in getattr(value, "options", ())]
+    elif isinstance(value, LawChoice):
+        items = [(join(key, name), item, value.units.get(name, "")) for name, item in value.parameters.items()]
+    elif isinstance(value, tuple):
+        items = [(join(key, _item_key(item, index)), item, unit) for index, item in enumerate(value)]
+    else:
+        items = [
+            (_field_key(key, field), getattr(value, field.key), getattr(field.kind, "unit", ""))
+            for field in (fields_of(type(value)) if is_dataclass(value) else ())
+        ]
+    for inner, item, of in items:
+        yield from units_of_varying(item, inner, of)
+
+
 def shared_key(key: str, value: Varying) -> str:
     """The key under which a value varies: that of the fleet's section if all vehicles share it."""
     words = key.split(".")
     is_shared = value.per == "mission" and words[0] == "vehicles"
     return ".".join(words[2:]) if is_shared else key
+
+
+def _field_key(key: str, field: Field) -> str:
+    """The keys of an inlined law stand among those of its record."""
+    return key if isinstance(field.kind, Laws) and field.kind.inlined else join(key, field.key)
 
 
 def _item_key(item: Any, index: int) -> str:

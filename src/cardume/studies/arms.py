@@ -172,7 +172,7 @@ def _as_varied(problem: Any, changes: Sequence[str]) -> Any:
 def _unswept(mission: Mission) -> list[tuple[Mission, str]]:
     """The missions that the sweeps of one stand for, each with the words for what is special in it."""
     sweeps = sweeps_of(mission)
-    words = {key: _option_words(key, sweep.options) for key, sweep in sweeps.items()}
+    words = {key: option_words(key, sweep.options) for key, sweep in sweeps.items()}
     number = 1
     for sweep in sweeps.values():
         number *= len(sweep.options)
@@ -186,8 +186,13 @@ def _unswept(mission: Mission) -> list[tuple[Mission, str]]:
     return found
 
 
-def _option_words(key: str, options: Sequence[Any]) -> list[str]:
-    """A few words for each option of a sweep: a law by its name, and by its parameters where that says too little."""
+def option_words(key: str, options: Sequence[Any]) -> list[str]:
+    """A few words for each option of a sweep: a law by its name, and by its parameters where that says too little.
+
+    Args:
+        key: that is swept.
+        options: its values.
+    """
     laws = [getattr(option, "law", option) for option in options]
     if not all(isinstance(law, LawChoice) for law in laws):
         name = key.rpartition(".")[2]
