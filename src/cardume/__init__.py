@@ -8,7 +8,8 @@
 
 `load` takes a mission file, a path file or the name of a built-in mission, and raises `CardumeError`
 with what is wrong and what to do; `fly` gives a `Flight`, `compare` flies missions side by side and gives
-a `Comparison`.  Each name is imported when it is used.
+a `Comparison`; `study` flies one with values that are drawn or swept and gives an xarray data set,
+`open_study` one that was kept.  Each name is imported when it is used.
 """
 
 import importlib
@@ -21,10 +22,23 @@ if typing.TYPE_CHECKING:
     from cardume.missions.opening import open_mission as load
     from cardume.simulation.flight import Flight
     from cardume.studies.comparing import Comparison, compare
+    from cardume.studies.store import open_study
+    from cardume.studies.studying import study
 
     __version__: str
 
-__all__ = ["CardumeError", "Comparison", "Flight", "Mission", "__version__", "compare", "fly", "load"]
+__all__ = [
+    "CardumeError",
+    "Comparison",
+    "Flight",
+    "Mission",
+    "__version__",
+    "compare",
+    "fly",
+    "load",
+    "open_study",
+    "study",
+]
 
 _PLACES = {
     "CardumeError": ("cardume.errors", "CardumeError"),
@@ -34,6 +48,8 @@ _PLACES = {
     "compare": ("cardume.studies.comparing", "compare"),
     "fly": ("cardume.missions.flying", "fly_mission"),
     "load": ("cardume.missions.opening", "open_mission"),
+    "open_study": ("cardume.studies.store", "open_study"),
+    "study": ("cardume.studies.studying", "study"),
 }
 
 

@@ -26,6 +26,7 @@ from cardume.cli.new import new
 from cardume.cli.report import report
 from cardume.cli.run import run
 from cardume.cli.stopping import Stopped
+from cardume.cli.study import study
 from cardume.errors import CardumeError
 from cardume.units import printable
 
@@ -71,7 +72,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, compare, report, calibrate, list_, new, convert):
+for _command in (run, check, compare, study, report, calibrate, list_, new, convert):
     cli.add_command(_command)
 
 

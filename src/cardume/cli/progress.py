@@ -13,8 +13,10 @@ WORDS = {
     "compile": "compiling the engine, once per installation",
     "fly": "flying",
     "compare": "flying missions",
+    "study": "flying missions",
+    "verify": "checking what was flown",
 }
-PACED = ("compare",)  # stages whose pieces take equally long, so that their rate says when they end
+PACED = ("compare", "study")  # stages whose pieces take equally long, so that their rate says when they end
 
 
 class Progress:
@@ -55,6 +57,11 @@ class Progress:
                 self._bar.update(self._bar.task_ids[0], completed=done, total=total, pace=self._pace())
         if done >= total:
             self._end_stage()
+
+    def pause(self) -> None:
+        """Make room for something else to be said."""
+        self._end_stage()
+        self._stage = ""
 
     def _pace(self) -> str:
         """Rate and time left, where they mean something."""
@@ -105,5 +112,15 @@ def pace(done: int, total: int, seconds: float) -> str:
     rate = done / seconds
     fast = f"{rate:.3g} per second" if rate >= 1.0 else f"{60.0 * rate:.2g} per minute"
     left = (total - done) / rate
-    still = f"{left:.0f} s" if left < 120.0 else f"{left / 60.0:.0f} min" if left < 7200.0 else f"{left / 3600.0:.1f} h"
-    return f"{fast}, {still} left"
+    return f"{fast}, {time_words(left)} left"
+
+
+def time_words(seconds: float) -> str:
+    """A time for people.
+
+    Args:
+        seconds: [s]
+    """
+    if seconds < 120.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"

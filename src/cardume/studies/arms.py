@@ -66,7 +66,7 @@ def make_arms(
     for mission, name in zip(missions, names, strict=True):
         for choice in choices:
             changes = tuple(f"{key}={value}" for key, value in choice)
-            found = _opened(mission, overrides, changes, tuple(allow_code))
+            found = open_given(mission, overrides, changes, tuple(allow_code))
             said = [name] if len(missions) > 1 else []
             label = ", ".join([*said, *(_value_words(key, value) for key, value in choice)])
             arms += [
@@ -146,9 +146,20 @@ def _given(mission: Given) -> str:
     return mission.name if isinstance(mission, Mission) else str(mission)
 
 
-def _opened(
+def open_given(
     given: Given, overrides: Sequence[str], changes: Sequence[str], allow_code: tuple[str | Path, ...]
 ) -> Mission:
+    """A mission by whatever is given for it.
+
+    Args:
+        given: file, built-in name, or a mission already read.
+        overrides: what `--set` gives.
+        changes: what `--vary` gives.
+        allow_code: folders from which laws may be imported.
+
+    Raises:
+        InputError: nothing of that name, or a mission that cannot be read.
+    """
     try:
         if not isinstance(given, Mission):
             return open_mission(given, [*overrides, *changes], allow_code=allow_code)

@@ -89,9 +89,7 @@ class Cases:
         """
         if not self.axes:
             return self.mission
-        return with_options(
-            self.mission, {axis.key: axis.options[k] for axis, k in zip(self.axes, place, strict=True)}
-        )
+        return with_options(self.mission, {axis.key: axis.options[k] for axis, k in zip(self.axes, place, strict=True)})
 
     def words(self, place: Place) -> str:
         """A case for people.

@@ -196,24 +196,30 @@ def block_of(layout: Layout, portion: Portion, tables: Sequence[RunTable]) -> di
     Args:
         layout: of the study.
         portion: that was flown.
-        tables: of its cases, in order.
+        tables: whose rows are the runs of its first case, then of the next, and so on.
 
     Raises:
-        InputError: something is required of a run that was not known before.
+        InputError: a run has a metric, or a requirement, that no run was known to have.
     """
     columns = [_columns(layout, table) for table in tables]
+    if unknown := {name for some in columns for name in some} - layout.variables.keys():
+        raise InputError(f"some runs only have {', '.join(sorted(unknown))}, for which the study made no place")
     found = {}
     for name, variable in layout.variables.items():
-        size = (*portion.shape, *layout.sizes_after(variable))
-        parts = np.concatenate([_column(variable, of_case.get(name), size[len(layout.axes) :]) for of_case in columns])
-        found[name] = parts.reshape(size)
+        after = layout.sizes_after(variable)
+        parts = [_column(variable, some.get(name), (len(some[LAST]), *after)) for some in columns]
+        found[name] = np.concatenate(parts).reshape(*portion.shape, *after)
     return found
 
 
 def _drawn_variable(one: Drawn) -> Variable:
     attrs = {"role": "drawn", "key": one.key, "units": one.unit, "long_name": f"{one.key}, as drawn"}
     name = f"drawn.{one.key}"
-    return Variable(name, (RUN,), "float64", math.nan, attrs) if one.is_number else Variable(name, (RUN,), "str", "", attrs)
+    return (
+        Variable(name, (RUN,), "float64", math.nan, attrs)
+        if one.is_number
+        else Variable(name, (RUN,), "str", "", attrs)
+    )
 
 
 def _metric(name: str) -> Variable:
@@ -286,5 +292,5 @@ def _typical(value: Any) -> float:
     if isinstance(value, (int, float)):
         return float(value)
     if options := getattr(value, "options", ()):
-        return sum(options) / len(options)
-    return float(value.mean) if hasattr(value, "mean") else 0.5 * (value.low + value.high)
+        return float(sum(options) / len(options))
+    return float(value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high))

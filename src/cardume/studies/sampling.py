@@ -62,7 +62,8 @@ def sampling_note(sampling: str, runs: int, keys: Sequence[str]) -> str:
 def _points(dimensions: int, runs: int, sampling: str, seed: int) -> np.ndarray:
     qmc = needed("scipy.stats.qmc", "scipy")
     if sampling == "latin_hypercube":
-        return np.clip(qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(runs), SMALLEST, LARGEST)
+        points = qmc.LatinHypercube(dimensions, rng=np.random.default_rng(seed)).random(runs)
+        return np.asarray(np.clip(points, SMALLEST, LARGEST))
     if dimensions > MOST_KEYS:
         raise InputError(f"{dimensions} values are drawn; sobol spreads at most {MOST_KEYS}; use latin_hypercube")
     sobol = qmc.Sobol(dimensions, scramble=True, bits=SOBOL_BITS, rng=np.random.default_rng(seed))

@@ -1,0 +1,270 @@
+"""How a study begins: what it will hold, whether anything varies, whether it fits on the disk."""
+
+import hashlib
+import os
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cardume.errors import InputError
+from cardume.missions.atomic import new_directory
+from cardume.missions.available import catalog
+from cardume.missions.loading import parse_mission
+from cardume.missions.mission import Mission
+from cardume.studies.cases import Cases, cases_of
+from cardume.studies.distributing import Task, stamp
+from cardume.studies.flying import Progress
+from cardume.studies.forecast import Forecast, Trial, check_that_something_varies, wants_lanes
+from cardume.studies.layout import (
+    Layout,
+    Portion,
+    chunk_shape,
+    expected_steps,
+    make_requirements,
+    make_variables,
+)
+from cardume.studies.ledger import Ledger, digest_of
+from cardume.studies.sampling import needed, sample_chances, sampling_note
+from cardume.studies.store import (
+    STORE_NAME,
+    bytes_free,
+    bytes_needed,
+    create_arrays,
+    create_study,
+    files_of,
+)
+from cardume.units import printable
+
+MOST_MISSIONS = 100_000_000
+LARGEST_SEED = 2**63 - 1
+SPARE = 1000  # seeds above those of the runs, for flights that are only tried
+MEMORY = 4 * 10**9  # [bytes] that a study may hold where it is given no directory
+
+
+@dataclass
+class Begun:
+    """A study that can be flown.
+
+    Attributes:
+        directory: where it is kept; None in memory.
+        text: its mission, resolved.
+        cases: of it.
+        layout: of its data set.
+        left: portions to be flown, by number.
+        seconds: [s] that one processor takes for one mission.
+        allow_code: folders from which laws may be imported.
+        notes: worth knowing.
+        store: of its arrays.
+    """
+
+    directory: Path | None
+    text: str
+    cases: Cases
+    layout: Layout
+    left: Mapping[int, Portion]
+    seconds: float
+    allow_code: tuple[str, ...]
+    notes: tuple[str, ...]
+    store: Any = None
+    ledger: Ledger | None = field(default=None)
+
+    def create(self, stack: ExitStack) -> None:
+        """Make its place, with nothing flown in it yet.
+
+        Args:
+            stack: that will let go of it.
+        """
+        if self.directory is None:
+            self.store = needed("zarr.storage", "zarr").MemoryStore()
+            create_arrays(self.store, self.layout)
+            return
+        with new_directory(self.directory) as folder:
+            create_study(folder, self.layout, self.cases.mission.to_yaml(self.directory))
+        self.store = self.directory / STORE_NAME
+        self.ledger = stack.enter_context(Ledger(self.directory))
+
+    def note(self, number: int) -> None:
+        """Note that a portion is written.
+
+        Args:
+            number: of it.
+        """
+        if self.ledger is not None and self.directory is not None:
+            self.ledger.note(number, digest_of(files_of(self.directory, self.layout, self.left[number])))
+
+    def tasks(self) -> list[Task]:
+        """What is left, as it is flown."""
+        lanes = wants_lanes(self.cases, len(self.layout.seeds))
+        return [
+            Task(
+                number=number,
+                text=self.text,
+                places=tuple(portion.places),
+                seeds=self.layout.seeds[portion.runs],
+                chances={key: values[portion.runs] for key, values in self.layout.chances.items()},
+                allow_code=self.allow_code,
+                engine=stamp(),
+                lanes=lanes,
+            )
+            for number, portion in self.left.items()
+        ]
+
+    def forecast(self, slots: int) -> Forecast:
+        """How long it will take, and how much disk.
+
+        Args:
+            slots: missions that are flown at once.
+        """
+        missions = sum(portion.size for portion in self.left.values())
+        return Forecast(
+            missions=missions,
+            complete=self.cases.size * len(self.layout.seeds) - missions,
+            seconds=missions * self.seconds / max(slots, 1),
+            slots=slots,
+            bytes=bytes_needed(self.layout),
+            free=bytes_free(self.directory) if self.directory is not None else 0,
+            directory=self.directory,
+            notes=self.notes,
+        )
+
+
+def begin(
+    directory: Path | None,
+    mission: Mission,
+    runs: int | None,
+    sampling: str,
+    command: str,
+    allow_code: tuple[str, ...],
+    progress: Progress,
+) -> Begun:
+    """A new study, of which nothing exists yet.
+
+    Args:
+        directory: to keep it in; None for memory.
+        mission: with what varies in it.
+        runs: of each case.
+        sampling: monte_carlo, latin_hypercube or sobol.
+        command: that was typed.
+        allow_code: folders from which laws may be imported.
+        progress: called with "compile", how much is done, and how much there is.
+
+    Raises:
+        InputError: it cannot be flown, or does not fit.
+    """
+    needed("zarr", "zarr")
+    needed("xarray", "xarray")
+    if directory is not None:
+        refuse_taken(directory)
+    text = mission.to_yaml()
+    cases = cases_of(parse_mission(text, catalog(allow_code), source="the mission"))
+    count = _checked(runs, cases)
+    seeds = cases.mission.seed + np.arange(count, dtype=np.int64)
+    chances = sample_chances([one.key for one in cases.drawn], count, sampling, cases.mission.seed)
+    trial = Trial(cases, seeds, chances, allow_code, progress)
+    tables = trial.glimpses()
+    layout = Layout(
+        axes=cases.axes,
+        seeds=seeds,
+        vehicles=tuple(vehicle.name for vehicle in cases.mission.vehicles),
+        requirements=make_requirements(tables),
+        variables=make_variables(cases.drawn, tables),
+        chunk=chunk_shape((*cases.shape, count), expected_steps(cases)),
+        chances=chances,
+        attrs={
+            "title": f"study of {cases.mission.name}",
+            "version": installed_version(),
+            "engine": stamp(),
+            "mission": text,
+            "mission_hash": hashlib.sha256(text.encode()).hexdigest(),
+            "swept": [axis.key for axis in cases.axes],
+            "sampling": sampling,
+            "seed": cases.mission.seed,
+            "runs": count,
+            "command": command,
+        },
+    )
+    _refuse_too_large(directory, layout)
+    notes = check_that_something_varies(cases, count, trial.is_random)
+    notes += tuple(note for note in (sampling_note(sampling, count, [one.key for one in cases.drawn]),) if note)
+    left = dict(enumerate(layout.portions()))
+    return Begun(directory, text, cases, layout, left, trial.seconds(), allow_code, notes)
+
+
+def refuse_taken(directory: Path) -> None:
+    """Check that a study can be begun in a directory.
+
+    Args:
+        directory: to keep it in.
+
+    Raises:
+        InputError: something is there already, or nothing can be written there.
+    """
+    name = printable(str(directory))
+    if (directory / STORE_NAME).exists():
+        raise InputError(f"-o {name}: holds a study already; continue it with --resume, or give a new directory")
+    if directory.exists() and not directory.is_dir():
+        raise InputError(f"-o {name}: is a file; give a new directory with -o")
+    place = next(path for path in (directory, *directory.absolute().parents) if path.exists())
+    if not place.is_dir():
+        raise InputError(
+            f"{printable(str(place))} is a file, so nothing fits below it; choose another place with -o DIR"
+        )
+    if not os.access(place, os.W_OK | os.X_OK):
+        raise InputError(f"no permission to write in {printable(str(place))}; choose another place with -o DIR")
+    if directory.is_dir() and any(directory.iterdir()):
+        raise InputError(f"-o {name}: is not empty, and holds no study; give a new directory with -o")
+
+
+def _checked(runs: int | None, cases: Cases) -> int:
+    if runs is None:
+        raise InputError("say how many runs each case is flown with, as --runs 1000")
+    if runs < 1:
+        raise InputError(f"--runs {runs}: give at least 1")
+    if runs * cases.size > MOST_MISSIONS:
+        what = f"{runs} runs" if not cases.axes else f"{runs} runs of {cases.size} cases"
+        raise InputError(f"{what} are more missions than a study may have, {MOST_MISSIONS:,}; give fewer")
+    if cases.mission.seed + runs + SPARE > LARGEST_SEED:
+        raise InputError(
+            f"{runs} runs from seed {cases.mission.seed} on go beyond the largest seed; give a smaller one"
+        )
+    return runs
+
+
+def _refuse_too_large(directory: Path | None, layout: Layout) -> None:
+    size = bytes_needed(layout)
+    if directory is None:
+        if size > MEMORY:
+            raise InputError(f"the study takes up to {in_bytes(size)}; give it a directory to be kept in")
+        return
+    free = bytes_free(directory)
+    if size > free:
+        raise InputError(
+            f"the study takes up to {in_bytes(size)}, and {in_bytes(free)} are free where {printable(str(directory))}"
+            " is; make room, fly fewer runs, or choose another disk with -o DIR"
+        )
+
+
+def in_bytes(size: float) -> str:
+    """A size [bytes] for people.
+
+    Args:
+        size: [bytes]
+    """
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if size < 1000.0:
+            return f"{size:.3g} {unit}"
+        size /= 1000.0
+    return f"{size:.3g} TB"
+
+
+def installed_version() -> str:
+    """The version of cardume."""
+    try:
+        return metadata.version("cardume")
+    except metadata.PackageNotFoundError:
+        return "unknown"

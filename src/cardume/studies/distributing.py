@@ -1,0 +1,336 @@
+"""Who flies the portions of a study: threads of this process, or the workers of a Dask cluster.
+
+Only data goes over the wire: the mission's text, places in its sweeps, seeds and chances; numbers come back.  Tables
+hold machine addresses, so they are built where they are flown.  A mission's own laws are imported by a worker from the
+folders that the user allowed, and only from those.
+"""
+
+import hashlib
+import math
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from pathlib import Path
+from queue import Empty, Queue
+from types import TracebackType
+from typing import Any, Protocol
+
+import numpy as np
+
+from cardume.compiler import source_stamp
+from cardume.errors import CardumeError, InputError, MissionError
+from cardume.missions.available import catalog
+from cardume.missions.loading import parse_mission
+from cardume.missions.mission import Mission
+from cardume.simulation.flight import Metrics
+from cardume.studies.cases import Cases, Place, cases_of
+from cardume.studies.flying import Progress, fly_seeds, num_processors
+from cardume.studies.run_table import Numbers, RunTable, tabulate
+from cardume.studies.sampling import needed
+from cardume.units import printable
+
+PATIENCE = 5.0  # [s] for a scheduler to answer
+GLANCE = 0.2  # [s] between two looks at whether to stop
+AHEAD = 2000  # tasks that a scheduler knows of at a time
+RESUME = "what was flown is kept: --resume continues"
+FEW = 8  # missions for each thread, below which the cases of a portion are flown side by side
+
+
+class ClusterError(CardumeError):
+    """A cluster that stopped working; what was flown is kept."""
+
+    exit_code = 3
+
+
+@dataclass(frozen=True)
+class Task:
+    """A portion, as it is sent to whoever flies it.
+
+    Attributes:
+        number: of the portion.
+        text: the resolved mission of the study.
+        places: the cases to fly.
+        seeds: (run,) to fly each with.
+        chances: by key (run,) numbers in (0, 1).
+        allow_code: folders from which laws may be imported.
+        engine: the sources that are to fly it.
+        lanes: whether eight missions share a register.
+    """
+
+    number: int
+    text: str
+    places: tuple[Place, ...]
+    seeds: np.ndarray
+    chances: Mapping[str, np.ndarray]
+    allow_code: tuple[str, ...]
+    engine: str
+    lanes: bool
+
+    @property
+    def size(self) -> int:
+        """Missions in it."""
+        return len(self.places) * len(self.seeds)
+
+
+class Crew(Protocol):
+    """Flies tasks, and gives what each left as soon as it is there, in whatever order."""
+
+    @property
+    def slots(self) -> int:
+        """How many missions it flies at once."""
+        ...
+
+    def fly(
+        self, tasks: Sequence[Task], should_stop: Callable[[], bool], progress: Callable[[int], None]
+    ) -> Iterator[tuple[Task, list[RunTable]]]:
+        """Task by task what it left; after a stop no more come.
+
+        Args:
+            tasks: to fly.
+            should_stop: asked every few milliseconds.
+            progress: called with the missions flown of tasks that are not given yet.
+        """
+        ...
+
+
+class Threads:
+    """Flies in this process.
+
+    Args:
+        threads: how many at once; None for as many as there are processors.
+    """
+
+    def __init__(self, threads: int | None = None) -> None:
+        self.slots = threads or num_processors()
+
+    def fly(
+        self, tasks: Sequence[Task], should_stop: Callable[[], bool], progress: Callable[[int], None]
+    ) -> Iterator[tuple[Task, list[RunTable]]]:
+        """See `Crew`."""
+        for task in tasks:
+            tables = fly_task(task, self.slots, should_stop, progress)
+            if should_stop():
+                return
+            yield task, tables
+
+
+class Cluster:
+    """Flies on the workers of a Dask cluster: of one that runs already, or of one made for the study.
+
+    Args:
+        address: of the scheduler; None makes a cluster on this machine.
+        workers: processes of the latter.
+    """
+
+    def __init__(self, address: str | None = None, workers: int = 1) -> None:
+        self._address, self._workers = address, workers
+        self._stack = ExitStack()
+        self._client: Any = None
+
+    def __enter__(self) -> "Cluster":
+        distributed = needed("distributed", "dask and distributed")
+        needed("dask", "dask and distributed")
+        try:
+            if self._address is None:
+                self._client = self._stack.enter_context(distributed.Client(self._local(distributed)))
+            else:
+                self._client = self._stack.enter_context(_connected(distributed, self._address))
+        except BaseException:
+            self._stack.close()
+            raise
+        return self
+
+    def __exit__(self, _kind: type | None, _error: BaseException | None, _trace: TracebackType | None) -> None:
+        self._stack.close()
+
+    @property
+    def slots(self) -> int:
+        """How many missions it flies at once now."""
+        return sum(self._client.nthreads().values())
+
+    def fly(
+        self, tasks: Sequence[Task], should_stop: Callable[[], bool], progress: Callable[[int], None]
+    ) -> Iterator[tuple[Task, list[RunTable]]]:
+        """See `Crew`.
+
+        Raises:
+            ClusterError: the scheduler is gone, or one task after another ended the worker that flew it.
+        """
+        waiting, flying, done = list(reversed(tasks)), dict[str, tuple[Task, Any]](), Queue[Any]()
+        try:
+            while (waiting or flying) and not should_stop():
+                while waiting and len(flying) < AHEAD:
+                    task = waiting.pop()
+                    future = self._client.submit(fly_remotely, task, pure=False)
+                    flying[future.key] = task, future
+                    future.add_done_callback(done.put)
+                try:
+                    future = done.get(timeout=GLANCE)
+                except Empty:
+                    if self._client.status != "running":
+                        raise ClusterError(f"the Dask scheduler is gone; {RESUME}") from None
+                    continue
+                task, _ = flying.pop(future.key)
+                yield task, _result(future)
+        finally:
+            self._client.cancel([future for _, future in flying.values()], force=True)
+
+    def _local(self, distributed: Any) -> Any:
+        return self._stack.enter_context(
+            distributed.LocalCluster(
+                n_workers=self._workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                silence_logs="CRITICAL",
+            )
+        )
+
+
+def fly_task(
+    task: Task,
+    threads: int,
+    should_stop: Callable[[], bool] = lambda: False,
+    progress: Callable[[int], None] = lambda done: None,
+) -> list[RunTable]:
+    """Fly a portion, each case with each seed.
+
+    Args:
+        task: what to fly.
+        threads: how many at once.
+        should_stop: asked every few milliseconds.
+        progress: called with the missions flown so far.
+
+    Returns:
+        Tables whose rows, one after another, are the seeds of the first case, then of the next; fewer after a stop.
+
+    Raises:
+        InputError: the engine here is another one, or the mission cannot be read here.
+    """
+    if task.engine != stamp():
+        raise InputError(
+            f"the cardume here ({stamp()}) is not that of the study ({task.engine}); install the same version wherever"
+            " it is flown"
+        )
+    cases = _cases(task.text, task.allow_code)
+    counter = _Counter(progress)
+
+    def fly(place: Place, threads: int) -> list[RunTable]:
+        return _fly_case(cases.at(place), task, slice(0, len(task.seeds)), threads, should_stop, counter.part)
+
+    if len(task.seeds) >= FEW * threads or len(task.places) == 1:
+        by_case = [fly(place, threads) for place in task.places if not should_stop()]
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            by_case = list(pool.map(lambda place: fly(place, 1), task.places))
+    return [table for tables in by_case for table in tables]
+
+
+class _Counter:
+    """Adds up the missions flown in several cases at once."""
+
+    def __init__(self, tell: Callable[[int], None]) -> None:
+        self._tell, self._lock, self._total = tell, threading.Lock(), 0
+
+    def part(self) -> Progress:
+        """What one call of `fly_seeds` is to tell."""
+        before = 0
+
+        def note(stage: str, done: int, _total: int) -> None:
+            nonlocal before
+            if stage == "fly":
+                with self._lock:
+                    self._total += done - before
+                    before = done
+                    self._tell(self._total)
+
+        return note
+
+
+def fly_remotely(task: Task) -> list[RunTable]:
+    """Fly a portion on a worker, one of whose threads this is.
+
+    Args:
+        task: what to fly.
+    """
+    return fly_task(task, 1)
+
+
+@cache
+def stamp() -> str:
+    """A hash of every source file that the numbers of a run depend on."""
+    package = Path(__file__).parents[1]
+    digest = hashlib.blake2s(source_stamp().encode(), digest_size=8)
+    files = [package / "studies" / name for name in ("flying.py", "run_table.py")]
+    for file in sorted([*files, *(package / "missions").rglob("*.py")]):
+        digest.update(file.relative_to(package).as_posix().encode() + file.read_bytes())
+    return digest.hexdigest()
+
+
+@lru_cache(maxsize=4)
+def _cases(text: str, allow_code: tuple[str, ...]) -> Cases:
+    return cases_of(parse_mission(text, catalog(allow_code), source="the mission of the study"))
+
+
+def _fly_case(
+    mission: Mission,
+    task: Task,
+    some: slice,
+    threads: int,
+    should_stop: Callable[[], bool],
+    part: Callable[[], Progress],
+) -> list[RunTable]:
+    """Fly a case; where the values drawn for some run do not fit one another, that run is refused, not the study."""
+    seeds, chances = task.seeds[some], {key: values[some] for key, values in task.chances.items()}
+    note = part()
+    try:
+        table = fly_seeds(
+            mission,
+            seeds,
+            chances=chances,
+            allow_code=task.allow_code,
+            threads=threads,
+            lanes=task.lanes or None,
+            should_stop=should_stop,
+            progress=note,
+        )
+        return [table]
+    except MissionError as problem:
+        note("fly", 0, len(seeds))
+        if len(seeds) == 1:
+            return [tabulate(mission, [Numbers(int(seeds[0]), {}, Metrics(), str(problem), math.nan)])]
+    middle = some.start + len(seeds) // 2
+    halves = slice(some.start, middle), slice(middle, some.stop)
+    return [table for half in halves for table in _fly_case(mission, task, half, threads, should_stop, part)]
+
+
+def _connected(distributed: Any, address: str) -> Any:
+    try:
+        return distributed.Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as problem:
+        what = printable(str(problem).splitlines()[0] if str(problem) else type(problem).__name__)[:200]
+        raise InputError(
+            f"--scheduler {printable(address)}: no Dask scheduler answers there ({what}); start one with"
+            " 'dask scheduler', and give the address that it prints, as tcp://192.168.1.7:8786"
+        ) from None
+
+
+def _result(future: Any) -> list[RunTable]:
+    """What a task left, or why it left nothing."""
+    try:
+        tables: list[RunTable] = future.result()
+        return tables
+    except CardumeError:
+        raise
+    except Exception as problem:
+        name, said = type(problem).__name__, printable(str(problem).splitlines()[0] if str(problem) else "")[:200]
+        if name in ("KilledWorker", "CancelledError", "FutureCancelledError", "CommClosedError", "TimeoutError"):
+            raise ClusterError(f"the cluster gave a portion up ({name}: {said}); {RESUME}") from None
+        if isinstance(problem, (ImportError, AttributeError, OSError)):
+            raise ClusterError(
+                f"a worker cannot fly ({name}: {said}); install the same cardume there; {RESUME}"
+            ) from None
+        raise

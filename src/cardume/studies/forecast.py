@@ -1,0 +1,175 @@
+"""Before a study flies: what its runs will tell, how long they will take, how much disk they need."""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from cardume.errors import InputError
+from cardume.missions.mission import Mission
+from cardume.studies.cases import Cases
+from cardume.studies.flying import LANES_FROM, Progress, fly_seeds
+from cardume.studies.layout import expected_steps
+from cardume.studies.run_table import RunTable
+
+GLIMPSE = 2.0  # [s] of a mission, in which every metric that it will have appears
+MOST_PROBED = 200  # options that are looked at
+SAMPLE = 32  # missions flown for their rate, where that takes less than
+SAMPLE_TIME = 1.0  # [s]
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What a study is about to do.
+
+    Attributes:
+        missions: still to be flown.
+        complete: flown already, when it continues.
+        seconds: [s] that flying will take.
+        slots: missions that are flown at once.
+        bytes: on the disk, at most; 0 in memory.
+        free: bytes there.
+        directory: where to; None in memory.
+        notes: worth knowing.
+    """
+
+    missions: int
+    complete: int
+    seconds: float
+    slots: int
+    bytes: int
+    free: int
+    directory: Path | None
+    notes: tuple[str, ...] = ()
+
+
+class Trial:
+    """Flies a few missions before a study: what will they tell, does anything vary, how long do they take.
+
+    Args:
+        cases: of the study.
+        seeds: (run,) of its runs.
+        chances: by key (run,) numbers in (0, 1).
+        allow_code: folders from which laws may be imported.
+        progress: called with "compile", how much is done, and how much there is.
+    """
+
+    def __init__(
+        self,
+        cases: Cases,
+        seeds: np.ndarray,
+        chances: Mapping[str, np.ndarray],
+        allow_code: tuple[str, ...] = (),
+        progress: Progress = lambda stage, done, total: None,
+    ) -> None:
+        self._cases, self._seeds, self._chances = cases, seeds, chances
+        self._allow_code, self._progress = allow_code, progress
+        self._lanes = wants_lanes(cases, len(seeds))
+
+    def glimpses(self) -> tuple[RunTable, ...]:
+        """The first moments of every option of every sweep: every metric and requirement is in one of them.
+
+        Raises:
+            InputError: the mission cannot be flown.
+        """
+        places = self._cases.each_option_once()
+        chosen = np.unique(np.linspace(0, len(places) - 1, MOST_PROBED).astype(int))
+        return tuple(self._glimpse(self._cases.at(places[k])) for k in chosen)
+
+    def is_random(self) -> bool:
+        """Whether the seed changes anything in the first case."""
+        table = self._fly(self._first, 2)
+        columns = (*table.metrics.values(), table.failed_at)
+        return not all(np.array_equal(values[:1], values[1:], equal_nan=True) for values in columns)
+
+    def seconds(self) -> float:
+        """How long [s] one processor takes for one mission of the study, in the mean of its cases."""
+        self._fly(_shortened(self._first), SAMPLE if self._lanes else 1, self._lanes)  # compiles
+        count = SAMPLE if self._lanes else 1
+        begin = time.perf_counter()
+        self._fly(self._first, count, self._lanes)
+        taken = (time.perf_counter() - begin) / count
+        if not self._lanes and taken * SAMPLE < SAMPLE_TIME:
+            begin = time.perf_counter()
+            self._fly(self._first, SAMPLE)
+            taken = (time.perf_counter() - begin) / SAMPLE
+        of_first = expected_steps(replace(self._cases, mission=self._first))
+        return taken * expected_steps(self._cases) / max(of_first, 1.0)
+
+    @property
+    def _first(self) -> Mission:
+        return self._cases.at(self._cases.each_option_once()[0])
+
+    def _fly(self, mission: Mission, count: int, lanes: bool = False) -> RunTable:
+        def note(stage: str, done: int, total: int) -> None:
+            if stage == "compile":
+                self._progress(stage, done, total)
+
+        return fly_seeds(
+            mission,
+            self._seeds[:count] if count <= len(self._seeds) else self._seeds[0] + np.arange(count),
+            chances={key: np.resize(values, count) for key, values in self._chances.items()},
+            allow_code=self._allow_code,
+            threads=1,
+            lanes=lanes or None,
+            progress=note,
+        )
+
+    def _glimpse(self, mission: Mission) -> RunTable:
+        """All of a mission that cannot be so short."""
+        try:
+            return self._fly(_shortened(mission), 1)
+        except InputError:
+            return self._fly(mission, 1)
+
+
+def wants_lanes(cases: Cases, runs: int) -> bool:
+    """Whether a study is long enough for the engine's second form, eight missions in a register, to be compiled.
+
+    Args:
+        cases: of the study.
+        runs: of each.
+    """
+    return expected_steps(cases) * cases.size * runs >= LANES_FROM
+
+
+def check_that_something_varies(cases: Cases, runs: int, is_random: Callable[[], bool]) -> tuple[str, ...]:
+    """What is worth knowing of what varies in a study.
+
+    Args:
+        cases: of the study.
+        runs: of each.
+        is_random: tells whether the seed changes anything, at the price of two flights.
+
+    Raises:
+        InputError: nothing does, so that all runs would be one.
+    """
+    if cases.drawn:
+        return ()
+    if is_random():
+        return ("no value is drawn: runs differ by noise and lost messages alone",)
+    if not cases.axes:
+        raise InputError(
+            "nothing varies: with any seed the mission gives the same numbers to the last bit. Let a value be drawn, as"
+            " --set 'current.speed={uniform: [0 m/s, 0.3 m/s]}', sweep one, as"
+            " --set 'guidance.lookahead={sweep: [3 m, 5 m, 8 m]}', or give the sensors noise"
+        )
+    if runs > 1:
+        raise InputError(
+            f"the sweeps make {cases.size} cases, but within a case nothing varies: with any seed it gives the same"
+            " numbers to the last bit. Fly each once, with --runs 1, or let a value be drawn, as"
+            " {uniform: [0 m/s, 0.3 m/s]}"
+        )
+    return ("no value is drawn and nothing is noisy: one run of each case tells all",)
+
+
+def _shortened(mission: Mission) -> Mission:
+    return replace(mission, duration=GLIMPSE) if _shortest(mission.duration) > GLIMPSE else mission
+
+
+def _shortest(duration: object) -> float:
+    if isinstance(duration, (int, float)):
+        return float(duration)
+    return min(getattr(duration, "options", (getattr(duration, "low", 0.0),)))
