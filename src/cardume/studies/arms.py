@@ -158,7 +158,7 @@ def open_given(
         allow_code: folders from which laws may be imported.
 
     Raises:
-        InputError: nothing of that name, or a mission that cannot be read.
+        MissionError: nothing of that name, or a mission that cannot be read.
     """
     try:
         if not isinstance(given, Mission):

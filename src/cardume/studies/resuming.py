@@ -51,7 +51,8 @@ def resume_at(
         progress: called with "compile" or "verify", how much is done, and how much there is.
 
     Raises:
-        InputError: it is damaged, another one, or another process flies it.
+        DataError: it is damaged, or of another version.
+        InputError: it is another study, or another process flies it.
     """
     if directory is None:
         raise InputError("--resume continues what is in a directory; say which with -o DIR")
