@@ -154,6 +154,9 @@ class Fix(NamedTuple):
     north: float = NOTHING  # [m]
     east: float = NOTHING  # [m]
     age: float = NOTHING  # [s] since it was valid
+    north_variance: float = NOTHING  # [m^2] NaN: not told
+    covariance: float = NOTHING  # [m^2] of north with east
+    east_variance: float = NOTHING  # [m^2]
 
 
 class Motion(NamedTuple):
@@ -170,10 +173,15 @@ class Motion(NamedTuple):
 
 
 class NavigationEstimate(NamedTuple):
-    """Where a vehicle believes it is."""
+    """Where a vehicle believes it is and, if its position law says that, how sure it is and what the current is."""
 
     north: float  # [m]
     east: float  # [m]
+    current_north: float = NOTHING  # [m/s] velocity over ground less the measured one through the water
+    current_east: float = NOTHING  # [m/s]
+    north_variance: float = NOTHING  # [m^2]
+    covariance: float = NOTHING  # [m^2] of north with east
+    east_variance: float = NOTHING  # [m^2]
 
 
 class Place(NamedTuple):
@@ -304,3 +312,6 @@ class Sighting(NamedTuple):
     path_speed: float = NOTHING  # [m/s]
     time_of_validity: float = NOTHING  # [s] of the coordination state; NaN: not known
     phase: float = 4.0  # [-] of its mission
+    north_variance: float = NOTHING  # [m^2] of where it was
+    covariance: float = NOTHING  # [m^2] of north with east
+    east_variance: float = NOTHING  # [m^2]

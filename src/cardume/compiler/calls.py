@@ -111,6 +111,7 @@ def law_answer(result: Any, plain: str | None = None) -> Callable[..., Any]:
         plain: the field that a law means which returns one number; the others are then NaN. None: it may not.
     """
     fields = result._fields if plain else ()
+    defaults = getattr(result, "_field_defaults", {})  # of what a law leaves out, which compiled records lack
 
     def as_answer(rows: Rows, answer: Any) -> Any:
         if plain is None or isinstance(answer, tuple):
@@ -120,13 +121,20 @@ def law_answer(result: Any, plain: str | None = None) -> Callable[..., Any]:
     def typed(rows: Any, answer: Any) -> Any:
         wanted = record_type(result, rows)
         fits = not isinstance(wanted, types.BaseTuple) or (
-            len(answer) == len(wanted) if isinstance(answer, types.BaseTuple) else plain is not None
+            0 <= len(wanted) - len(answer) <= len(defaults)
+            if isinstance(answer, types.BaseTuple)
+            else plain is not None
         )
         return wanted(rows, answer) if fits else None
 
     @primitive(as_answer, typed)
     def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
         (_, given), wanted, answer = signature.args, signature.return_type, arguments[1]
+        if isinstance(given, types.BaseTuple) and len(given) < len(wanted):
+            told = [(b.extract_value(answer, k), kind) for k, kind in enumerate(given.types)]
+            rest = [ir.Constant(ir.DoubleType(), defaults[field]) for field in result._fields[len(given) :]]
+            known = [*told, *((number, types.float64) for number in rest)]
+            return c.make_tuple(b, wanted, [widened(c, b, *part, wanted.types[0]) for part in known])
         if plain is None or isinstance(given, types.BaseTuple):
             return as_law_sees(c, b, answer, given, wanted)
         number, nothing = ir.Constant(ir.DoubleType(), math.nan), types.float64

@@ -15,7 +15,7 @@ import numpy as np
 
 from cardume.errors import DataError
 from cardume.missions.atomic import new_file
-from cardume.simulation.flight import CHANNELS, MESSAGE_COLUMNS, MESSAGE_KINDS, Flight, Metrics
+from cardume.simulation.flight import CERTAINTY, CHANNELS, MESSAGE_COLUMNS, MESSAGE_KINDS, Flight, Metrics
 from cardume.units import printable
 
 FORMAT_VERSION = 1
@@ -69,6 +69,9 @@ VARIABLES = {
     "phase": Meaning(
         "1", "phase of the mission: 0 dive, 1 gather, 2 ready, 3 assembled, 4 go, 5 hold, 6 surface, 7 abort"
     ),
+    "north_variance": Meaning("m2", "believed variance of the believed position, north; none if its law says none"),
+    "north_east_covariance": Meaning("m2", "believed covariance of its north and east"),
+    "east_variance": Meaning("m2", "believed variance of the believed position, east"),
 }
 MESSAGES = {
     "time_sent": Meaning("s", "when the message was sent"),
@@ -84,7 +87,7 @@ PATHS = {
     "north": Meaning("m", "north of the origin"),
     "east": Meaning("m", "east of the origin"),
 }
-ADDED = ("altitude", "depth_desired", "phase")  # since the first logs of this format
+ADDED = ("altitude", "depth_desired", "phase", *CERTAINTY)  # since the first logs of this format
 WHOLE = {"sender": "i4", "receiver": "i4", "kind": "i1", "lost": "i1", "vehicle": "i4"}
 
 

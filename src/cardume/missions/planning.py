@@ -31,7 +31,7 @@ from cardume.missions.route import FilePath
 from cardume.missions.seabed import numbers_only, read_seabed
 from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
 from cardume.missions.water import CurrentPoint
-from cardume.onboard.mind import Setup
+from cardume.onboard.mind import Datasheet, Setup
 from cardume.paths.offset import offset_path
 from cardume.paths.outline import outline
 from cardume.paths.projection import point_at
@@ -218,9 +218,29 @@ def _vehicle(mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice
             float(vehicle.end != "continue"),
             float(vehicle.end == "surface"),
             float("usbl" in laws),
+            float("fixes" in getattr(laws["position"].law.memory_type, "_fields", ())),
         ),
         order_book(mission, vehicle, path),
         safety_of(mission, vehicle),
+        _datasheet(laws),
+    )
+
+
+def _datasheet(laws: dict[str, Choice]) -> Datasheet:
+    """What is told of the errors of sensors whose laws have parameters that say them."""
+
+    def told(kind: str, *names: str) -> float:
+        choice = laws.get(kind)
+        known = {p.name for p in choice.law.parameters} if choice else set()
+        return math.hypot(*(choice.value(name) for name in names)) if choice and known >= set(names) else math.nan
+
+    gnss, of_ahrs = told("gnss", "sigma", "correlated_sigma"), laws.get("ahrs")
+    return Datasheet(
+        told("gnss", "sigma") if math.isnan(gnss) else gnss,
+        told("usbl", "range_sigma"),
+        told("usbl", "angle_sigma"),
+        told("ahrs", "heading_sigma") if of_ahrs else 0.0,
+        told("ahrs", "attitude_sigma") if of_ahrs else 0.0,
     )
 
 

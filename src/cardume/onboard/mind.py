@@ -35,6 +35,17 @@ class Setup(NamedTuple):
     stays: float = 1.0  # [-] 1: hold the end point, 0: go on along the extended path
     surfaces: float = 0.0  # [-] 1: come up at the end
     shares_sightings: float = 0.0  # [-] 1: carries a USBL head and tells the others where they are
+    takes_old_fixes: float = 0.0  # [-] 1: its position law wants also those that were valid before the last one
+
+
+class Datasheet(NamedTuple):
+    """What a vehicle is told of the errors of its sensors, standard deviations; NaN: nothing."""
+
+    gnss: float = NOTHING  # [m] per axis
+    range: float = NOTHING  # [m] by USBL
+    angle: float = NOTHING  # [rad] azimuth and elevation by USBL
+    heading: float = NOTHING  # [rad]
+    attitude: float = NOTHING  # [rad] roll and pitch
 
 
 class Orders(NamedTuple):
@@ -98,7 +109,10 @@ class Whereabouts(NamedTuple):
 
     north: float = 0.0  # [m]
     east: float = 0.0  # [m]
-    time_of_fix: float = LONG_AGO  # [s] validity of the last fix used
+    time_of_fix: float = LONG_AGO  # [s] validity of the newest fix used
+    north_variance: float = NOTHING  # [m^2] NaN: its position law does not say
+    covariance: float = NOTHING  # [m^2] of north with east
+    east_variance: float = NOTHING  # [m^2]
 
 
 class Along(NamedTuple):
@@ -151,6 +165,15 @@ class LastSeen(NamedTuple):
     north: float = NOTHING  # [m]
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when
+    north_variance: float = NOTHING  # [m^2]
+    covariance: float = NOTHING  # [m^2] of north with east
+    east_variance: float = NOTHING  # [m^2]
+
+
+class Told(NamedTuple):
+    """Of when the fix is that another vehicle told last and that was used."""
+
+    time_of_fix: float = LONG_AGO  # [s]
 
 
 class Mind(NamedTuple):
@@ -176,8 +199,9 @@ get_orders = ORDERS.reader(Orders)
 ORDERS_WIDTH = ORDERS.width
 POINT_WIDTH = 2
 
-OWN = Layout(Setup, DvlReading, Whereabouts, Water, Along, Speech, Correction, Progress, Journal, Sounding)
+OWN = Layout(Setup, Datasheet, DvlReading, Whereabouts, Water, Along, Speech, Correction, Progress, Journal, Sounding)
 get_setup, put_setup = OWN.reader(Setup), OWN.writer(Setup)
+get_datasheet = OWN.reader(Datasheet)
 get_speed, put_speed = OWN.reader(DvlReading), OWN.writer(DvlReading)
 get_whereabouts, put_whereabouts = OWN.reader(Whereabouts), OWN.writer(Whereabouts)
 get_current, put_current = OWN.reader(Water), OWN.writer(Water)
@@ -191,11 +215,12 @@ get_sounding, put_sounding = OWN.reader(Sounding), OWN.writer(Sounding)
 OWN_WIDTH = OWN.width
 
 # What a vehicle knows of one other; the place is where on its own path that one was seen.
-OTHERS = Layout(News, Fresh, Outlook, LastSeen, PathPlace)
+OTHERS = Layout(News, Fresh, Outlook, LastSeen, Told, PathPlace)
 get_news, put_news = OTHERS.reader(News), OTHERS.writer(News)
 get_fresh, put_fresh = OTHERS.reader(Fresh), OTHERS.writer(Fresh)
 get_outlook, put_outlook = OTHERS.reader(Outlook), OTHERS.writer(Outlook)
 get_last_seen, put_last_seen = OTHERS.reader(LastSeen), OTHERS.writer(LastSeen)
+get_told, put_told = OTHERS.reader(Told), OTHERS.writer(Told)
 get_seen_place, put_seen_place = OTHERS.reader(PathPlace), OTHERS.writer(PathPlace)
 
 OTHERS_WIDTH = OTHERS.width

@@ -1,17 +1,20 @@
 """Where am I, how fast, and where on my path."""
 
-from cardume.compiler import Rows, compiled, load, some, where
+from cardume.compiler import Rows, compiled, load, negate, some, where
 from cardume.maths import clip, to_ned, to_path
 from cardume.onboard.estimation.current import observe
 from cardume.onboard.estimation.position import estimate_position
 from cardume.onboard.estimation.speed.base import read_shaft
 from cardume.onboard.mind import (
-    LONG_AGO,
     Along,
     Mind,
+    Told,
     Whereabouts,
     get_along,
     get_current,
+    get_datasheet,
+    get_setup,
+    get_told,
     get_whereabouts,
     is_fresh,
     message_from,
@@ -19,6 +22,7 @@ from cardume.onboard.mind import (
     put_along,
     put_current,
     put_speed,
+    put_told,
     put_whereabouts,
     sighting_in,
 )
@@ -33,6 +37,7 @@ from cardume.signals import (
     PathError,
     Place,
     ShaftReading,
+    Sighting,
     Water,
 )
 
@@ -72,13 +77,26 @@ def believed_motion(mind: Mind, measured: Measured, speed: DvlReading) -> Motion
 @compiled
 def navigate(mind: Mind, measured: Measured, heard: Rows, motion: Motion, time: float) -> NavigationEstimate:
     """The believed position: GNSS where there is a reading, else the newest fix that was heard, else reckoning."""
-    fix = newest_fix(mind, heard, time)
     by_gnss = measured.gnss_north == measured.gnss_north
-    chosen = where(by_gnss, Fix(measured.gnss_north, measured.gnss_east, measured.gnss_age), fix)
+    if some(get_setup(mind.own, 0).takes_old_fixes > 0.5):
+        fix = unused_fix(mind, heard, by_gnss, time)
+    else:
+        fix = newest_fix(mind, heard, time)
+    variance = get_datasheet(mind.own, 0).gnss * get_datasheet(mind.own, 0).gnss
+    by_satellite = Fix(measured.gnss_north, measured.gnss_east, measured.gnss_age, variance, 0.0 * variance, variance)
+    chosen = where(by_gnss, by_satellite, fix)
     position = estimate_position(mind.book, 0, chosen, motion)
     before = get_whereabouts(mind.own, 0).time_of_fix
-    validity = where(chosen.north == chosen.north, time - chosen.age, before)
-    put_whereabouts(mind.own, 0, Whereabouts(position.north, position.east, validity))
+    valid = time - chosen.age
+    after = Whereabouts(
+        position.north,
+        position.east,
+        where((chosen.north == chosen.north) & (valid > before), valid, before),
+        position.north_variance,
+        position.covariance,
+        position.east_variance,
+    )
+    put_whereabouts(mind.own, 0, after)
     return position
 
 
@@ -86,17 +104,50 @@ def navigate(mind: Mind, measured: Measured, heard: Rows, motion: Motion, time: 
 def newest_fix(mind: Mind, heard: Rows, time: float) -> Fix:
     """The newest fix of this vehicle among the messages of this tick, unless an even newer one was used."""
     last = get_whereabouts(mind.own, 0)
-    north, east, valid = last.north, last.east, last.time_of_fix
-    found = valid < LONG_AGO  # nowhere
+    valid = last.time_of_fix
+    fix = _no_fix(valid)
     for source in range(load(mind.sources, 0)):
         message = message_from(heard, mind.size, source)
         if some(is_fresh(message)):
             seen = sighting_in(message, mind.me)
             newer = is_fresh(message) & (seen.time_of_fix > valid + SAME)
-            north, east = where(newer, seen.north, north), where(newer, seen.east, east)
+            fix = where(newer, _fix_told(seen, time), fix)
             valid = where(newer, seen.time_of_fix, valid)
-            found = found | newer
-    return Fix(where(found, north, NOTHING), where(found, east, NOTHING), where(found, time - valid, NOTHING))
+    return fix
+
+
+@compiled
+def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, time: float) -> Fix:
+    """A fix of this vehicle that somebody told and that was not used yet; when there are several, one in each tick.
+
+    Args:
+        mind: of the vehicle.
+        heard: (sources, message) its inbox, with what each said last.
+        by_gnss: [-] whether a GNSS reading comes first in this tick.
+        time: [s]
+    """
+    fix = _no_fix(get_whereabouts(mind.own, 0).time_of_fix)
+    for source in range(load(mind.sources, 0)):
+        sender = load(mind.sources, source + 1)
+        seen = sighting_in(message_from(heard, mind.size, source), mind.me)
+        used = get_told(mind.others, sender).time_of_fix
+        free = negate(by_gnss | (fix.north == fix.north))
+        is_unused = free & (seen.time_of_fix > used + SAME)
+        if some(is_unused):
+            fix = where(is_unused, _fix_told(seen, time), fix)
+            put_told(mind.others, sender, Told(where(is_unused, seen.time_of_fix, used)))
+    return fix
+
+
+@compiled
+def _fix_told(seen: Sighting, time: float) -> Fix:
+    return Fix(seen.north, seen.east, time - seen.time_of_fix, seen.north_variance, seen.covariance, seen.east_variance)
+
+
+@compiled
+def _no_fix(like: float) -> Fix:
+    nothing = NOTHING * like
+    return Fix(nothing, nothing, nothing, nothing, nothing, nothing)
 
 
 @compiled

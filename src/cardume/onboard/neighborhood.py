@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from cardume.compiler import Rows, at, compiled, load, some, where
 from cardume.maths import to_cartesian, to_ned_3d
+from cardume.maths.blocks import Spread
 from cardume.onboard.coordination import correct_speed
 from cardume.onboard.estimation.neighbors import predict
 from cardume.onboard.messaging import decide_to_send
@@ -16,6 +17,7 @@ from cardume.onboard.mind import (
     Outlook,
     Speech,
     get_along,
+    get_datasheet,
     get_fresh,
     get_last_seen,
     get_news,
@@ -124,33 +126,64 @@ def look_around(
         is_new = age == age
         if some(is_new):
             ahead, starboard, down = to_cartesian(load(reading, 0), load(reading, 1), load(reading, 2))
-            north, east, _ = to_ned_3d(
+            north, east, down = to_ned_3d(
                 measured.roll, measured.pitch, measured.heading - measured.yaw_rate * age, ahead, starboard, down
             )
+            spread = spread_of_sighting(mind, position, north, east, down)
             north = north + position.north - age * (motion.north + motion.current_north)
             east = east + position.east - age * (motion.east + motion.current_east)
-            sight(mind, vehicle, is_new, north, east, time - age, error)
+            seen = LastSeen(north, east, time - age, spread.nn, spread.ne, spread.ee)
+            sight(mind, vehicle, is_new, seen, error)
 
 
 @compiled
-def sight(mind: Mind, vehicle: int, is_new: bool, north: float, east: float, valid: float, error: PathError) -> None:
+def spread_of_sighting(mind: Mind, position: NavigationEstimate, north: float, east: float, down: float) -> Spread:
+    """Covariance of where a vehicle is seen: long across the line of sight, where angles and heading go wrong.
+
+    R = P_1 + a l l^T + b (1 - l l^T),   l = (north, east) / h,   h = hypot(north, east),   r = hypot(h, down)
+    a = (sigma_r h / r)^2 + (sigma_a down)^2 + t,   b = (sigma_a h)^2 + (sigma_psi h)^2 + t,   t = (sigma_t down)^2
+
+    P_1 is the covariance of the own position, of a vehicle that does not know it that of its GNSS; sigma_r and sigma_a
+    are those of the USBL, sigma_psi and sigma_t those of heading and of roll and pitch.
+
+    Args:
+        mind: of the one who sees.
+        position: its own.
+        north: [m] of the target from the head, by measured attitude.
+        east: [m]
+        down: [m]
+    """
+    told = get_datasheet(mind.own, 0)
+    level, below = north * north + east * east, down * down
+    angle, tilt = told.angle * told.angle, below * told.attitude * told.attitude
+    slant = where(level + below > 0.0, level + below, 1.0)
+    along = told.range * told.range * level / slant + angle * below + tilt
+    across = level * (angle + told.heading * told.heading) + tilt
+    more = (along - across) / where(level > 0.0, level, 1.0)
+    own, known = told.gnss * told.gnss, position.north_variance == position.north_variance
+    return Spread(
+        where(known, position.north_variance, own) + across + more * north * north,
+        where(known, position.covariance, 0.0) + more * north * east,
+        where(known, position.east_variance, own) + across + more * east * east,
+    )
+
+
+@compiled
+def sight(mind: Mind, vehicle: int, is_new: bool, seen: LastSeen, error: PathError) -> None:
     """Note where a vehicle was seen, and how far along its path the point abeam of it is.
 
     Args:
         mind: of the one who saw.
         vehicle: who was seen.
         is_new: [-] whether it was, in each lane.
-        north: [m]
-        east: [m]
-        valid: [s] when.
+        seen: where and when.
         error: where the one who saw is on its own path.
     """
     before, place_before = get_news(mind.others, vehicle), get_seen_place(mind.others, vehicle)
-    seen_at = Place(where(is_new, north, 0.0), where(is_new, east, 0.0), path_of(mind, vehicle))
+    seen_at = Place(where(is_new, seen.north, 0.0), where(is_new, seen.east, 0.0), path_of(mind, vehicle))
     found, place = project(seen_at, place_before)
     speed = where(before.state == before.state, before.path_speed, error.speed_profile)
-    learn(mind, vehicle, is_new, News(found.path_parameter, speed, valid, before.phase))
-    seen = LastSeen(north, east, valid)
+    learn(mind, vehicle, is_new, News(found.path_parameter, speed, seen.time_of_fix, before.phase))
     put_last_seen(mind.others, vehicle, where(is_new, seen, get_last_seen(mind.others, vehicle)))
     put_seen_place(mind.others, vehicle, where(is_new, place, place_before))
 

@@ -103,6 +103,9 @@ def speak(fleet: Fleet, sender: int, said: Said) -> None:
                 news.path_speed,
                 news.time_of_validity,
                 news.phase,
+                where_seen.north_variance,
+                where_seen.covariance,
+                where_seen.east_variance,
             )
             put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
         note_sent(fleet, sender, sends)

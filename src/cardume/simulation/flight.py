@@ -17,7 +17,9 @@ REFERENCES = ("course_desired", "heading_desired", "speed_desired", "speed_corre
 EFFORT = ("thrust", "yaw_moment", "shaft_speed_rpm")
 VERTICAL = ("altitude", "depth_desired")
 STAGE = ("phase",)
-CHANNELS = (*MOTION, *CURRENT, *ON_PATH, *POSITION_BELIEFS, *PATH_BELIEFS, *REFERENCES, *EFFORT, *VERTICAL, *STAGE)
+CERTAINTY = ("north_variance", "north_east_covariance", "east_variance")
+BELIEFS = (*POSITION_BELIEFS, *PATH_BELIEFS)
+CHANNELS = (*MOTION, *CURRENT, *ON_PATH, *BELIEFS, *REFERENCES, *EFFORT, *VERTICAL, *STAGE, *CERTAINTY)
 
 MESSAGE_COLUMNS = ("time_sent", "time_received", "sender", "receiver", "kind", "lost", "time_of_validity")
 MESSAGE_KINDS = ("report",)  # the number in the column `kind` is a place in this list

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 
 from cardume.laws import Law
-from cardume.onboard.mind import OVER_PATH, OVER_TIME, Orders, Setup
+from cardume.onboard.mind import OVER_PATH, OVER_TIME, Datasheet, Orders, Setup
 from cardume.paths.table import PathPlace
 from cardume.signals import VesselState
 from cardume.simulation.safety import Safety
@@ -86,6 +86,7 @@ class VehiclePlan:
         setup: what it is told before the mission.
         orders: what more it is told, of phases, profiles and limits.
         safety: the limits of depth and altitude that it is measured by.
+        datasheet: what it is told of its sensors' errors.
     """
 
     name: str
@@ -97,6 +98,7 @@ class VehiclePlan:
     setup: Setup = Setup()
     orders: OrderBook = OrderBook()
     safety: Safety = Safety()
+    datasheet: Datasheet = Datasheet()
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,9 @@ class Thought(NamedTuple):
     speed_correction: float  # [m/s]
     depth_desired: float  # [m]
     phase: float  # [-]
+    north_variance: float  # [m^2] NaN: its position law does not say
+    north_east_covariance: float  # [m^2]
+    east_variance: float  # [m^2]
 
 
 class MessageRow(NamedTuple):
@@ -141,6 +144,9 @@ def write_thought(fleet: Fleet, row: int, vehicle: int) -> None:
         get_correction(fleet.minds, vehicle).speed,
         reference.depth,
         phase_of(fleet, vehicle),
+        place.north_variance,
+        place.covariance,
+        place.east_variance,
     )
     put_thought(fleet.log, row, thought)
 

@@ -20,6 +20,7 @@ from cardume.onboard.mind import (
     Progress,
     Sounding,
     Speech,
+    Told,
     Whereabouts,
     inbox_width,
 )
@@ -178,9 +179,8 @@ def _vehicle_row(vehicle: VehiclePlan) -> np.ndarray:
 
 
 def _mind_row(vehicle: VehiclePlan) -> np.ndarray:
-    return _row(
-        OWN, vehicle.setup, Whereabouts(*_estimate(vehicle)), Speech(), _first_phase(vehicle), *_unwritten(vehicle)
-    )
+    believed = vehicle.setup, vehicle.datasheet, Whereabouts(*_estimate(vehicle)), Speech(), _first_phase(vehicle)
+    return _row(OWN, *believed, *_unwritten(vehicle))
 
 
 def _first_phase(vehicle: VehiclePlan) -> Progress:
@@ -206,7 +206,7 @@ def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
 
 def _known_of(vehicle: VehiclePlan) -> np.ndarray:
     """All that the others know of a vehicle before the mission: where on its path it starts."""
-    return _row(OTHERS, News(), Fresh(), Outlook(), LastSeen(), vehicle.place)
+    return _row(OTHERS, News(), Fresh(), Outlook(), LastSeen(), Told(), vehicle.place)
 
 
 def _estimate(vehicle: VehiclePlan) -> tuple[float, float]:

@@ -46,6 +46,7 @@ CHECKS: tuple[Check, ...] = (
     observer.check_euler,
     observer.check_gaps,
     observer.check_scale,
+    observer.check_source,
     guidance.check_lag,
     guidance.check_delay,
     guidance.check_tick,

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cardume.missions.checks.finding import Finding, Ranked, at_least, at_most, both, show, worst
+from cardume.missions.checks.finding import Finding, Ranked, at_least, at_most, both, setting_word, show, worst
 from cardume.missions.checks.fixes import has_parameter
 from cardume.missions.checks.scene import Craft, Scene
 from cardume.missions.checks.steering import guidance_rate
@@ -15,6 +15,7 @@ SAFE = 0.3
 CONTINUOUS = 0.1  # of the fastest time constant: fixes this frequent are as good as continuous
 MOST_LOST = 400  # fixes in a row that may be lost
 LONGEST_GAP = 1e6  # [s]
+CURRENTLESS = ("direct", "reset", "reset_compensated")  # position laws that give no current
 
 
 def gains(craft: Craft) -> tuple[float, float] | None:
@@ -199,6 +200,23 @@ def _calmer(scene: Scene, craft: Craft, k1: float, limit: float) -> str:
     while mean_square_radius(calm, 0.225 * calm * calm, fixes.period, fixes.loss) >= 1.0 and calm > 1e-6:
         calm *= 0.8
     return critically_damped(scene, craft, calm)
+
+
+def check_source(scene: Scene) -> list[Finding]:
+    """A current taken from a position law that estimates none."""
+    return worst(ranked for craft in scene.crafts for ranked in _from_nothing(scene, craft))
+
+
+def _from_nothing(scene: Scene, craft: Craft) -> Iterator[Ranked]:
+    position = craft.law("position").law
+    if craft.law("current_observer").law.name == "from_position" and position.name in CURRENTLESS:
+        key = scene.key(craft, "current_observer.law")
+        message = (
+            f"{craft.name} takes the current from its position law, and {position.name} estimates none:"
+            " it steers as if the water stood still"
+        )
+        cure = setting_word(scene.key(craft, "position.law"), "kalman_replay")
+        yield Ranked(1.0, Finding("warning", key, message, cure))
 
 
 def check_scale(scene: Scene) -> list[Finding]:

@@ -11,10 +11,15 @@ from cardume.missions.checks.fixes import has_gnss
 from cardume.missions.checks.scene import Craft, Scene
 from cardume.missions.mission import Mission
 from cardume.missions.rules import check_rules
+from cardume.onboard.estimation.position.kalman_replay import REMEMBERED as REPLAYED
 from cardume.onboard.estimation.position.reset_compensated import REMEMBERED
 
 BIAS_SHOWN = 0.05  # [m]
 MOST_TRIED = 100
+LOOKING_BACK = {
+    "reset_compensated": (REMEMBERED - 1, "taken for as old as that"),
+    "kalman_replay": (REPLAYED - 1, "left out"),
+}
 KINDS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed", "altimeter")
 
 
@@ -123,18 +128,22 @@ def _lagging(scene: Scene, craft: Craft) -> Iterator[Ranked]:
 
 
 def check_memory(scene: Scene) -> list[Finding]:
-    """Fixes older than what `reset_compensated` remembers of its own way."""
+    """Fixes older than what a position law that looks back remembers of its own way."""
     return worst(ranked for craft in scene.crafts for ranked in _forgotten(scene, craft))
 
 
 def _forgotten(scene: Scene, craft: Craft) -> Iterator[Ranked]:
-    remembered, age = (REMEMBERED - 1) * scene.mission.tick, craft.fixes.age
-    if craft.law("position").law.name == "reset_compensated" and age > remembered:
+    law = craft.law("position").law.name
+    if law not in LOOKING_BACK:
+        return
+    ticks, consequence = LOOKING_BACK[law]
+    remembered, age = ticks * scene.mission.tick, craft.fixes.age
+    if age > remembered:
         message = (
-            f"{craft.name}: fixes are {show(age, 's')} old, and reset_compensated remembers {REMEMBERED - 1} ticks,"
-            f" {show(remembered, 's')}: what is older is taken for as old as that"
+            f"{craft.name}: fixes are {show(age, 's')} old, and {law} remembers {ticks} ticks,"
+            f" {show(remembered, 's')}: what is older is {consequence}"
         )
-        yield Ranked(age, Finding("warning", "tick", message, _longer_tick(scene.mission, age / (REMEMBERED - 1))))
+        yield Ranked(age, Finding("warning", "tick", message, _longer_tick(scene.mission, age / ticks)))
 
 
 def _longer_tick(mission: Mission, needed: float) -> str:

@@ -25,3 +25,18 @@ def displacement(motion: Motion, dt: float) -> tuple[float, float]:
     """
     north, east = to_ned(motion.heading + 0.5 * dt * motion.yaw_rate, motion.surge, motion.sway)
     return dt * (north + motion.current_north), dt * (east + motion.current_east)
+
+
+@compiled
+def way_through_water(motion: Motion, dt: float) -> tuple[float, float]:
+    """The same without the current: R(psi + r dt / 2) (u, v) dt.
+
+    Args:
+        motion: believed heading [rad], yaw rate [rad/s] and velocity through the water [m/s].
+        dt: [s] tick.
+
+    Returns:
+        North and east [m].
+    """
+    north, east = to_ned(motion.heading + 0.5 * dt * motion.yaw_rate, motion.surge, motion.sway)
+    return dt * north, dt * east
