@@ -105,8 +105,8 @@ def test_a_fix_says_how_it_errs(seed):
     if seed is not None:
         draw = np.random.default_rng([33, seed])
         numbers |= {"course": draw.uniform(0, 6), "gnss": draw.uniform(0.1, 1), "heading": draw.uniform(0, 0.02)}
-        numbers |= {"attitude": draw.uniform(0, 0.02), "range": draw.uniform(0.05, 1), "angle": draw.uniform(0, 0.02)}
-        numbers |= {"depth": draw.uniform(5, 40), "aside": draw.uniform(-50, 50), "ahead": draw.uniform(-50, 50)}
+        numbers |= {"attitude": draw.uniform(0, 0.02), "range": draw.uniform(0.05, 0.3), "angle": draw.uniform(0, 0.02)}
+        numbers |= {"depth": draw.uniform(5, 40), "aside": draw.choice([-1, 1]) * draw.uniform(20, 50)}
     flown = fly_plan(MISSION.format(**numbers))
     fix = fix_of(flown)
     told = np.array([[fix.north_variance, fix.covariance], [fix.covariance, fix.east_variance]])

@@ -46,7 +46,7 @@ def kalman_replay(
     motion: Motion,
     memory: Replayed,
     dt: Seconds,
-    velocity_noise: NotNegative[Annotated[float, Unit("m^2/s")]] = 1e-3,
+    velocity_noise: NotNegative[Annotated[float, Unit("m^2/s")]] = 3e-3,
     current_noise: NotNegative[Annotated[float, Unit("m^2/s^3")]] = 1e-6,
     current_fading: NotNegative[PerSecond] = 0.0,
     initial_sigma: NotNegative[Meters] = 10.0,
