@@ -46,7 +46,12 @@ def transposed(a: Block) -> Block:
 
 @compiled
 def scaled(factor: float, a: Block) -> Block:
-    """The product of a number and a matrix [any]."""
+    """The product of a number and a matrix.
+
+    Args:
+        factor: [any]
+        a: [any]
+    """
     return Block(factor * a.nn, factor * a.ne, factor * a.en, factor * a.ee)
 
 
