@@ -302,7 +302,7 @@ def _some(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
     return b.icmp_unsigned("!=", packed, ir.Constant(ir.IntType(WIDTH), 0))
 
 
-def _constant(kind: Any, value: int) -> Any:
+def _constant(kind: Any, value: float) -> Any:
     return ir.Constant(kind, [value] * WIDTH) if isinstance(kind, ir.VectorType) else ir.Constant(kind, value)
 
 
@@ -310,12 +310,25 @@ def _bit_shapes(x: Any) -> tuple[Any, Any, Any]:
     return (LANES, DOUBLES, WORDS) if x is LANES else (types.float64, DOUBLE, INT64)
 
 
+# Before AVX-512 no processor converts a register of floats to whole numbers. Whole numbers below 2^52 need no
+# conversion: added to 2^52 (1.5 times it, if they may be negative) they are the last bits of the sum.
+_TWO_52, _THREE_51 = 2.0**52, 1.5 * 2.0**52
+_TWO_52_BITS, _THREE_51_BITS = 0x4330000000000000, 0x4338000000000000
+
+
+def whole(b: Any, number: Any) -> Any:
+    """LLVM code for the signed words of whole numbers below 2^51 in size, in one lane or eight."""
+    floats, words = (DOUBLES, WORDS) if number.type == DOUBLES else (DOUBLE, INT64)
+    raised = b.bitcast(b.fadd(number, _constant(floats, _THREE_51)), words)
+    return b.sub(raised, _constant(words, _THREE_51_BITS))
+
+
 @intrinsic
 def _power_of_two(context: Any, k: Any) -> Any:
     number, floats, words = _bit_shapes(k)
 
     def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
-        exponent = b.add(b.fptosi(arguments[0], words), _constant(words, 1023))
+        exponent = b.bitcast(b.fadd(arguments[0], _constant(floats, _THREE_51 + 1023.0)), words)
         return b.bitcast(b.shl(exponent, _constant(words, 52)), floats)
 
     return number(number), generate
@@ -340,9 +353,10 @@ def _split(context: Any, x: Any) -> Any:
 
     def generate(c: Any, b: Any, s: Any, arguments: Any) -> Any:
         bits = b.add(b.bitcast(arguments[0], words), _constant(words, 0x3FF0000000000000 - _HALF_ROOT))
-        exponent = b.sub(b.lshr(bits, _constant(words, 52)), _constant(words, 1023))
+        raised = b.or_(b.lshr(bits, _constant(words, 52)), _constant(words, _TWO_52_BITS))
+        exponent = b.fsub(b.bitcast(raised, floats), _constant(floats, _TWO_52 + 1023.0))
         mantissa = b.add(b.and_(bits, _constant(words, 0x000FFFFFFFFFFFFF)), _constant(words, _HALF_ROOT))
-        return c.make_tuple(b, s.return_type, (b.sitofp(exponent, floats), b.bitcast(mantissa, floats)))
+        return c.make_tuple(b, s.return_type, (exponent, b.bitcast(mantissa, floats)))
 
     return types.UniTuple(number, 2)(number), generate
 
@@ -360,12 +374,20 @@ def _split2(x: Any) -> Any:
     return lambda x: _split(x)
 
 
-_lanes_to_bits = _unary_intrinsic(lambda b, x: b.fptoui(x, WORDS), LANES, LANE_BITS)
-_lanes_from_bits = _unary_intrinsic(lambda b, x: b.uitofp(x, DOUBLES), LANE_BITS, LANES)
+def _low_bits(b: Any, x: Any) -> Any:
+    return b.xor(b.bitcast(b.fadd(x, _constant(DOUBLES, _TWO_52)), WORDS), _constant(WORDS, _TWO_52_BITS))
+
+
+def _from_low_bits(b: Any, bits: Any) -> Any:
+    return b.fsub(b.bitcast(b.or_(bits, _constant(WORDS, _TWO_52_BITS)), DOUBLES), _constant(DOUBLES, _TWO_52))
+
+
+_lanes_to_bits = _unary_intrinsic(_low_bits, LANES, LANE_BITS)
+_lanes_from_bits = _unary_intrinsic(_from_low_bits, LANE_BITS, LANES)
 
 
 def to_bits(x: float) -> np.uint64:
-    """A whole number 0 <= x < 2^53 as an unsigned word."""
+    """A whole number 0 <= x < 2^52 as an unsigned word."""
     return np.uint64(int(x))
 
 
@@ -375,7 +397,7 @@ def _to_bits(x: Any) -> Any:
 
 
 def to_float(bits: np.uint64) -> float:
-    """A word below 2^53 as a float, exactly."""
+    """A word below 2^52 as a float, exactly."""
     return float(bits)
 
 

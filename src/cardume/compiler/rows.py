@@ -17,7 +17,7 @@ from numba.core import cgutils
 from numba.extending import models, overload, register_model
 
 from cardume.compiler.compiled import INLINED
-from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, spread, widened
+from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, WORDS, spread, whole, widened
 from cardume.compiler.primitive import primitive
 
 Rows = np.ndarray  # (k,) float64; how laws and records annotate a table
@@ -235,19 +235,33 @@ def _gather_type(table: Any, index: Any) -> Any:
 def _gather(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
     """Each lane reads a row of its own choice; a NaN index reads row 0."""
     (kind, index_type), (table, index) = signature.args, arguments
-    is_lanes = index_type is LANES
-    zero = ir.Constant(DOUBLES, [0.0] * WIDTH) if is_lanes else ir.Constant(DOUBLE, 0.0)
+    if index_type is not LANES:
+        safe = b.select(b.fcmp_ordered("ord", index, index), index, ir.Constant(DOUBLE, 0.0))
+        return load_row(b, kind, row_address(c, b, kind, table, whole(b, safe)))
+    zero = ir.Constant(DOUBLES, [0.0] * WIDTH)
     safe = b.select(b.fcmp_ordered("ord", index, index), index, zero)
-    numbers = b.fptosi(safe, ir.VectorType(INT64, WIDTH) if is_lanes else INT64)
-    if not is_lanes:
-        return load_row(b, kind, row_address(c, b, kind, table, numbers))
-    result = ir.Constant(DOUBLES, ir.Undefined)
-    for lane in range(WIDTH):
-        which = ir.Constant(INT32, lane)
-        place = row_address(c, b, kind, table, b.extract_element(numbers, which))
-        place = b.gep(place, [which]) if kind is LANE_ROWS else place
-        result = b.insert_element(result, b.load(place), which)
-    return result
+    numbers, answer = whole(b, safe), cgutils.alloca_once(b, DOUBLES)
+    first, is_same = _same_in_all(b, numbers)
+    with b.if_else(is_same, likely=True) as (together, apart):
+        with together:
+            value = load_row(b, kind, row_address(c, b, kind, table, first))
+            b.store(value if kind is LANE_ROWS else spread(b, value, DOUBLES), answer)
+        with apart:
+            result = ir.Constant(DOUBLES, ir.Undefined)
+            for lane in range(WIDTH):
+                which = ir.Constant(INT32, lane)
+                place = row_address(c, b, kind, table, b.extract_element(numbers, which))
+                place = b.gep(place, [which]) if kind is LANE_ROWS else place
+                result = b.insert_element(result, b.load(place), which)
+            b.store(result, answer)
+    return b.load(answer)
+
+
+def _same_in_all(b: Any, numbers: Any) -> tuple[Any, Any]:
+    """LLVM code: the first lane, and whether all lanes have its number."""
+    first = b.extract_element(numbers, ir.Constant(INT32, 0))
+    apart = b.icmp_unsigned("!=", numbers, spread(b, first, WORDS))
+    return first, b.icmp_unsigned("==", b.bitcast(apart, ir.IntType(WIDTH)), ir.Constant(ir.IntType(WIDTH), 0))
 
 
 def scatter(table: Rows, index: float, condition: bool, value: float) -> None:
@@ -275,17 +289,24 @@ def _scatter(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
     (kind, index_type, truth_type, value_type), (table, index, condition, value) = signature.args, arguments
     if kind is not LANE_ROWS:
         with b.if_then(condition):
-            place = row_address(c, b, kind, table, b.fptosi(index, INT64))
+            place = row_address(c, b, kind, table, whole(b, index))
             b.store(widened(c, b, value, value_type, types.float64), place)
         return c.get_dummy_value()
-    numbers = b.fptosi(widened(c, b, index, index_type, LANES), ir.VectorType(INT64, WIDTH))
+    numbers = whole(b, widened(c, b, index, index_type, LANES))
     mask = widened(c, b, condition, truth_type, MASK)
     values = widened(c, b, value, value_type, LANES)
-    for lane in range(WIDTH):
-        which = ir.Constant(INT32, lane)
-        with b.if_then(b.extract_element(mask, which)):
-            row = row_address(c, b, kind, table, b.extract_element(numbers, which))
-            b.store(b.extract_element(values, which), b.gep(row, [which]))
+    first, is_same = _same_in_all(b, numbers)
+    writes = b.icmp_unsigned("!=", b.bitcast(mask, ir.IntType(WIDTH)), ir.Constant(ir.IntType(WIDTH), 0))
+    with b.if_else(b.and_(is_same, writes), likely=True) as (together, apart):
+        with together:
+            row = row_address(c, b, kind, table, first)
+            store_row(b, kind, row, b.select(mask, values, load_row(b, kind, row)))
+        with apart:
+            for lane in range(WIDTH):
+                which = ir.Constant(INT32, lane)
+                with b.if_then(b.extract_element(mask, which)):
+                    row = row_address(c, b, kind, table, b.extract_element(numbers, which))
+                    b.store(b.extract_element(values, which), b.gep(row, [which]))
     return c.get_dummy_value()
 
 

@@ -152,8 +152,10 @@ def uniforms(key: Key, tick: float) -> tuple[float, float, float, float]:
     c0, c1, k0, k1 = to_bits(tick), to_bits(key.stream), to_bits(key.seed_low), to_bits(key.seed_high)
     c2, c3 = to_bits(key.vehicle_low), to_bits(key.vehicle_high)
     zero = (c0 ^ c0) | (c1 ^ c1) | (c2 ^ c2) | (c3 ^ c3) | (k0 ^ k0) | (k1 ^ k1)
-    # One lane-valued word makes all of them lane-valued: the tick, say, is the same in all lanes.
-    c0, c1, c2, c3 = philox(c0 | zero, c1 | zero, c2 | zero, c3 | zero, k0 | zero, k1 | zero)
+    # One lane-valued word makes all of them lane-valued: the tick, say, is the same in all lanes. The compiler
+    # multiplies halves instead of whole words where it sees that they are below 2^32.
+    c0, c1, c2, c3 = (c0 | zero) & WORD, (c1 | zero) & WORD, (c2 | zero) & WORD, (c3 | zero) & WORD
+    c0, c1, c2, c3 = philox(c0, c1, c2, c3, (k0 | zero) & WORD, (k1 | zero) & WORD)
     return _unit(c0), _unit(c1), _unit(c2), _unit(c3)
 
 
