@@ -14,6 +14,7 @@ from cardume.compiler.lanes import (
     where,
 )
 from cardume.compiler.records import Layout
+from cardume.compiler.reference import fixed, passing
 from cardume.compiler.rows import (
     Rows,
     SharedRows,
@@ -38,11 +39,13 @@ __all__ = [
     "by_width",
     "compiled",
     "entry",
+    "fixed",
     "floor",
     "gather",
     "load",
     "load_fixed",
     "negate",
+    "passing",
     "ramp",
     "rows_of",
     "scale2",

@@ -9,7 +9,6 @@ them is a new name.
 """
 
 import hashlib
-import inspect
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -19,9 +18,7 @@ from numba import config, njit
 from numba.extending import overload
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-# Records go by value: a call that is not inlined copies them, and a fleet is large; it cost half of a tick.
-INLINED = {"forceinline": True}
-LARGE = 12  # values
+INLINED = {"forceinline": True}  # for what is a line or two; large records go by reference, see reference.py
 COMPUTE_LAYERS = (
     "compiler",
     "maths",
@@ -37,18 +34,6 @@ F = TypeVar("F", bound=Callable[..., Any])
 _registered: set[Callable[..., Any]] = set()
 
 
-def _takes_much(function: Callable[..., Any]) -> bool:
-    """Whether a call would copy a large record: a fleet or a mind, not a state or an error."""
-    return any(_size(p.annotation) > LARGE for p in inspect.signature(function).parameters.values())
-
-
-def _size(kind: Any) -> int:
-    """How many values a record holds, those of records in it counted one by one."""
-    if not hasattr(kind, "_fields"):
-        return 1
-    return sum(_size(kind.__annotations__.get(field)) for field in kind._fields)
-
-
 def compiled(function: F) -> F:
     """Let compiled code call this function; return it unchanged.
 
@@ -60,9 +45,7 @@ def compiled(function: F) -> F:
     """
 
     # Numba compiles `function` itself, once for each number type that it meets.
-    options = OPTIONS | (INLINED if _takes_much(function) else {})
-
-    @overload(function, strict=False, jit_options=options)
+    @overload(function, strict=False, jit_options=OPTIONS)
     def specialized(*arguments: Any) -> Callable[..., Any]:
         return function
 

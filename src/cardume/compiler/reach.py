@@ -1,6 +1,8 @@
 """What a user's law reaches: its helpers are compiled with it, and its name in the cache covers them all."""
 
+import dis
 import hashlib
+import typing
 from collections.abc import Callable
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
@@ -92,3 +94,27 @@ def fingerprint(function: Callable[..., Any], wrapper: str = "") -> str:
 
     add(function, {})
     return digest.hexdigest()
+
+
+def fields_read(function: Callable[..., Any], kind: type[Any]) -> set[str]:
+    """Which fields of a record a function reads of its argument of that kind; all of them where that cannot be seen.
+
+    Args:
+        function: plain Python with annotations.
+        kind: the class of the record.
+
+    Returns:
+        Names of fields; none without such an argument.
+    """
+    hints = typing.get_type_hints(function)
+    names = [name for name, hint in hints.items() if hint is kind and name != "return"]
+    everything, found = set(kind._fields), set()
+    steps = list(dis.get_instructions(function))
+    for step, after in zip(steps, [*steps[1:], None], strict=True):
+        mentioned = step.argval if isinstance(step.argval, tuple) else (step.argval,)
+        if not step.opname.startswith("LOAD") or not set(names) & set(mentioned):
+            continue
+        if after is None or after.opname != "LOAD_ATTR" or len(mentioned) > 1 or after.argval not in everything:
+            return everything
+        found.add(after.argval)
+    return found

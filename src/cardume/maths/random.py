@@ -19,7 +19,7 @@ from cardume.errors import InputError
 from cardume.maths.elementary import log
 from cardume.maths.trigonometry import sincos_turns
 
-__all__ = ["Key", "Noise", "normals", "philox", "random_key", "stream_id", "uniforms", "vehicle_id"]
+__all__ = ["Key", "Noise", "normal_pair", "normals", "philox", "random_key", "stream_id", "uniforms", "vehicle_id"]
 
 WORD = np.uint64(0xFFFFFFFF)
 HALF = np.uint64(32)
@@ -160,10 +160,26 @@ def uniforms(key: Key, tick: float) -> tuple[float, float, float, float]:
 
 
 @compiled
-def normals(key: Key, tick: float) -> Noise:
-    """Four independent standard normal numbers.
+def normal_pair(chance: float, turns: float) -> tuple[float, float]:
+    """Two independent standard normal numbers of two uniform ones.
 
-    a + i b = sqrt(-2 log u_1) exp(2 pi i u_2)   (Box and Muller), c + i d likewise
+    a + i b = sqrt(-2 log chance) exp(2 pi i turns)   (Box and Muller)
+
+    Args:
+        chance: [-] in (0, 1).
+        turns: [-] in (0, 1).
+
+    Returns:
+        (a, b) [-].
+    """
+    size = sqrt(-2.0 * log(chance))
+    sine, cosine = sincos_turns(turns)
+    return size * cosine, size * sine
+
+
+@compiled
+def normals(key: Key, tick: float) -> Noise:
+    """Four independent standard normal numbers: two pairs, see `normal_pair`.
 
     Args:
         key: the stream.
@@ -173,7 +189,6 @@ def normals(key: Key, tick: float) -> Noise:
         The noise; none exceeds sqrt(66 log 2) = 6.76 in size, because u_1 >= 2^-33.
     """
     u, v, w, x = uniforms(key, tick)
-    first, second = sqrt(-2.0 * log(u)), sqrt(-2.0 * log(w))
-    sin_v, cos_v = sincos_turns(v)
-    sin_x, cos_x = sincos_turns(x)
-    return Noise(first * cos_v, first * sin_v, second * cos_x, second * sin_x)
+    a, b = normal_pair(u, v)
+    c, d = normal_pair(w, x)
+    return Noise(a, b, c, d)

@@ -25,7 +25,7 @@ class Timing(NamedTuple):
     sample: float = 0.0  # [-] readings so far
     period: float = 1.0  # [ticks]
     latency: float = 0.0  # [ticks]
-    is_noisy: float = 1.0  # [-] 0: its law asks for no noise
+    noise_pairs: float = 2.0  # [-] of random numbers that its law reads: 0, 1 or 2
 
 
 class Due(NamedTuple):
@@ -152,6 +152,7 @@ class Fleet(NamedTuple):
     has_seabed: int  # [-] 1: the mission has a seabed
     has_phases: int  # [-] 1: some vehicle has more to do than to follow its path
     is_watched: int  # [-] 1: depth, altitude, geofence or separation are limited
+    has_weather: int  # [-] 1: the current has noise of its own
     air: Air
     scores: Rows  # (vehicle, the records of SCORES)
     fleet_score: Rows  # FleetScore
@@ -179,6 +180,7 @@ class Whole(NamedTuple):
     has_seabed: int = 0
     has_phases: int = 0
     is_watched: int = 0
+    has_weather: int = 0
 
 
 class Tables(NamedTuple):
@@ -265,6 +267,7 @@ def fleet_of(tables: Tables) -> Fleet:
         whole.has_seabed,
         whole.has_phases,
         whole.is_watched,
+        whole.has_weather,
         air,
         rows_of(tables.scores),
         rows_of(tables.fleet_score),

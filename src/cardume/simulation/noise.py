@@ -5,15 +5,15 @@ once, one in each lane, at the price of little more than one.  Eight missions in
 reading by reading; the numbers are the same.
 """
 
-from cardume.compiler import Rows, by_width, compiled, load, ramp, spill
-from cardume.maths.random import Key, Noise, normals
+from cardume.compiler import Rows, by_width, compiled, load, ramp, some, spill
+from cardume.maths.random import Key, Noise, normal_pair, normals, uniforms
 
 AHEAD = 8  # readings
 NOISE_WIDTH = 4 * AHEAD  # numbers kept
 
 
 @compiled
-def _drawn_ahead(store: Rows, key: Key, tick: float, period: float, sample: float) -> Noise:
+def _drawn_ahead(store: Rows, key: Key, tick: float, period: float, sample: float, pairs: float) -> Noise:
     place = int(sample) % AHEAD
     if place == 0:
         ahead = normals(key, ramp(tick, period))
@@ -25,9 +25,18 @@ def _drawn_ahead(store: Rows, key: Key, tick: float, period: float, sample: floa
 
 
 @compiled
-def _drawn_now(store: Rows, key: Key, tick: float, period: float, sample: float) -> Noise:
-    return normals(key, tick)
+def _drawn_now(store: Rows, key: Key, tick: float, period: float, sample: float, pairs: float) -> Noise:
+    u, v, w, x = uniforms(key, tick)
+    a, b = normal_pair(u, v)
+    noise = Noise(a, b, 0.0 * a, 0.0 * b)
+    if some(pairs > 1.5):
+        c, d = normal_pair(w, x)
+        noise = Noise(a, b, c, d)
+    return noise
 
 
 noise_of_reading = by_width(_drawn_ahead, _drawn_now)
-"""(store, key, tick, period, sample) -> the noise of reading number `sample`, valid at a tick."""
+"""(store, key, tick, period, sample, pairs) -> the noise of reading number `sample`, valid at a tick.
+
+Of two pairs of numbers the second may be left out, if nobody reads it.
+"""

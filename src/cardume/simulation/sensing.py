@@ -114,10 +114,10 @@ def key_of(fleet: Fleet, vehicle: int, stream: int) -> Key:
 def noise_of(fleet: Fleet, vehicle: int, sensor: int, timing: Timing, now: int) -> Noise:
     """The noise of a reading, named after the tick it is valid in."""
     noise = Noise(0.0 * timing.latency, 0.0 * timing.latency, 0.0 * timing.latency, 0.0 * timing.latency)
-    if some(timing.is_noisy > 0.5):
+    if some(timing.noise_pairs > 0.5):
         kept = at(fleet.noise, (vehicle * NUM_SENSORS + sensor) * NOISE_WIDTH)
         key, tick = key_of(fleet, vehicle, sensor), now - timing.latency
-        noise = noise_of_reading(kept, key, tick, timing.period, timing.sample)
+        noise = noise_of_reading(kept, key, tick, timing.period, timing.sample, timing.noise_pairs)
     return noise
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from cardume.compiler import WIDTH, Layout
+from cardume.compiler.reach import fields_read
 from cardume.laws import COLUMNS, FAMILIES
 from cardume.maths.random import random_key
 from cardume.onboard.mind import (
@@ -92,6 +93,7 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True) -> Tabl
             int(any("bathymetry" in v.laws for v in vehicles)),
             int(any(v.orders.has_phases for v in vehicles)),
             int(plan.is_watched),
+            int(any(v.laws["current"].law.asks_for(Noise) for v in vehicles if "current" in v.laws)),
         ),
         plan.tick,
         _handles(vehicles, size, lanes) if with_laws else np.zeros(size * len(FAMILIES) * COLUMNS, np.int64),
@@ -221,16 +223,21 @@ def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
             choice = vehicle.laws[sensor]
             latency = float(round(choice.value("latency") / tick))
             period = float(max(1, round(choice.value("period") / tick)))
-            timing = Timing(latency, 0.0, period, latency, float(_is_noisy(choice)))
+            timing = Timing(latency, 0.0, period, latency, float(_noise_pairs(choice)))
         row.append(_row(TIMING, timing))
     return np.concatenate(row)
 
 
-def _is_noisy(choice: Choice) -> bool:
-    """Whether a sensor's law asks for noise, and is not told that all of it is zero: a user's is never known to be."""
+def _noise_pairs(choice: Choice) -> int:
+    """How many pairs of random numbers a sensor's law reads; none where it is told that all its noise is zero.
+
+    Of a user's law it is never known that its noise is zero.
+    """
     sizes = [p.name for p in choice.law.parameters if any(part in p.name for part in CHANCES)]
-    is_told = choice.law.is_builtin and sizes
-    return choice.law.asks_for(Noise) and (not is_told or any(choice.value(name) for name in sizes))
+    if choice.law.is_builtin and sizes and not any(choice.value(name) for name in sizes):
+        return 0
+    read = fields_read(choice.law.function, Noise)
+    return 2 if read & {"c", "d"} else 1 if read else 0
 
 
 def _key_row(vehicle: VehiclePlan, seed: int) -> np.ndarray:

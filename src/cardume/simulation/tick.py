@@ -1,6 +1,6 @@
 """One tick of the engine."""
 
-from cardume.compiler import Rows, at, compiled, load, negate, some, store, where
+from cardume.compiler import Rows, at, compiled, load, negate, passing, some, store, where
 from cardume.onboard.agent import decide
 from cardume.onboard.mind import get_progress, get_whereabouts
 from cardume.onboard.phases import takes_part
@@ -57,7 +57,7 @@ def tick(fleet: Fleet, now: int) -> bool:
     for i in range(fleet.size):
         measured = sense(fleet, i, now)
         heard = arrived(fleet, i, time)
-        reference, said = decide(mind_of(fleet, i), measured, heard, time)
+        reference, said = decide(passing(mind_of(fleet, i)), measured, heard, time)
         put_reference(fleet.vehicles, i, reference)
         speak(fleet, i, said)
     carry(fleet, time, now)  # delay, loss
@@ -74,8 +74,11 @@ def tick(fleet: Fleet, now: int) -> bool:
 @compiled
 def common_noise(fleet: Fleet, now: int) -> Noise:
     """The randomness of the sea, the same for all vehicles."""
-    kept = at(fleet.noise, fleet.size * NUM_SENSORS * NOISE_WIDTH)
-    return noise_of_reading(kept, get_key(fleet.keys, fleet.size * NUM_STREAMS), now * 1.0, 1.0, now * 1.0)
+    key, kept = get_key(fleet.keys, fleet.size * NUM_STREAMS), at(fleet.noise, fleet.size * NUM_SENSORS * NOISE_WIDTH)
+    noise = Noise(0.0 * key.stream, 0.0 * key.stream, 0.0 * key.stream, 0.0 * key.stream)
+    if fleet.has_weather > 0:
+        noise = noise_of_reading(kept, key, now * 1.0, 1.0, now * 1.0, 2.0 + 0.0 * key.stream)
+    return noise
 
 
 @compiled
