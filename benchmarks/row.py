@@ -17,6 +17,8 @@ from cardume.compiler import source_stamp
 ROOT = Path(__file__).parents[1]
 FORMAT = 1
 RATE = "Mvs/s"  # million vehicle-steps per second; a vehicle-step is one plant step of one vehicle
+TIMES = "x"  # as fast as something else in the same run
+MORE_IS_BETTER = (RATE, TIMES)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +30,7 @@ class Row:
         case: what was measured, readable.
         build: "scalar" or "lanes" where a table puts the two side by side.
         value: the best of several, in `unit`; NaN: not measured, `remark` says why.
-        unit: ms, s, %, or RATE; more is better only for RATE.
+        unit: ms, s, %, RATE or TIMES; more is better for the last two.
         target: what the figure has to reach; None: it is only reported.
         median: the middle of several, in `unit`; NaN: there was one.
         cpu: the best in processor time, in `unit`: as if nothing else ran here.
@@ -63,7 +65,7 @@ class Row:
 
     def _reaches(self, value: float) -> bool:
         wanted = self.target if self.target is not None else math.nan
-        return value >= wanted if self.unit == RATE else value <= wanted
+        return value >= wanted if self.unit in MORE_IS_BETTER else value <= wanted
 
 
 def run_record(rows: Sequence[Row], calibration: Calibration, is_smoke: bool) -> dict[str, Any]:

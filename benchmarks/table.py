@@ -7,7 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks.row import RATE, Row, rows_of
+from benchmarks.row import MORE_IS_BETTER, RATE, Row, rows_of
 from benchmarks.workloads import HAS_LANES
 
 PIVOTED = "families"
@@ -65,7 +65,7 @@ def _figures(rows: Sequence[Row], is_smoke: bool) -> Table:
     last = ""
     for row in rows:
         table.add_section() if row.workload != last else None
-        limit = ">=" if row.unit == RATE else "<="
+        limit = ">=" if row.unit in MORE_IS_BETTER else "<="
         table.add_row(
             row.workload if row.workload != last else "",
             row.case,
@@ -147,7 +147,7 @@ def faster(was: Row, now: Row) -> float:
         was: the figure before.
         now: the same figure now.
     """
-    if now.unit == RATE:
+    if now.unit in MORE_IS_BETTER:
         return now.value / was.value
     return was.value / now.value if now.unit in ("s", "ms") else math.nan
 

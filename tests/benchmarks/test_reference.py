@@ -1,0 +1,136 @@
+"""The C programs of the reference workload do the same work as cardume: the same log, messages and metrics."""
+
+import math
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from numba import config
+
+from benchmarks.calibration import Calibration
+from benchmarks.reference import native
+from benchmarks.reference.workload import reference_plans
+from benchmarks.timing import Effort
+from cardume.simulation.flight import Metrics
+from cardume.simulation.fly import Flown, fly
+from cardume.simulation.plan import Plan
+from cardume.simulation.recording import CHANNELS, MESSAGES
+from cardume.simulation.results import metrics_of
+from cardume.simulation.score import FLEET_SCORES, SCORES, FleetScore, Formation, Score, Talk
+
+SAME = 1e-9
+MISSIONS = 9  # one more than fit side by side
+needs_c = pytest.mark.skipif(native.why_not() is not None, reason=str(native.why_not()))
+programs = pytest.mark.parametrize("program", [native.SCALAR, native.VECTOR_256], ids=lambda p: p.source)
+
+
+class Whole(Effort):
+    """The missions at their full length; shorter ones where nothing is compiled."""
+
+    def mission_seconds(self) -> float:
+        return 600.0 if not config.DISABLE_JIT else 12.0
+
+
+@cache
+def plans() -> list[Plan]:
+    return reference_plans(MISSIONS, Whole(Calibration(1)))
+
+
+@cache
+def flown(which: int) -> Flown:
+    return fly(plans()[which])
+
+
+@cache
+def in_c(program: native.Program) -> native.Flying:
+    flying = native.Flying(program, plans())
+    flying.fly(threads=2)
+    return flying
+
+
+def assert_same(ours: np.ndarray, theirs: np.ndarray) -> None:
+    assert (np.isnan(ours) == np.isnan(theirs)).all()
+    np.testing.assert_allclose(theirs, ours, rtol=0.0, atol=SAME)
+
+
+@needs_c
+@programs
+@pytest.mark.parametrize("which", [0, 5, 8])
+def test_the_whole_log_is_the_same(program: native.Program, which: int) -> None:
+    theirs, size = in_c(program)["log"][which], len(plans()[which].vehicles)
+    ours = flown(which).tables.log.reshape(-1, size, len(CHANNELS))[: len(theirs)]
+    for channel, name in enumerate(CHANNELS):
+        np.testing.assert_allclose(theirs[..., channel], ours[..., channel], rtol=0.0, atol=SAME, err_msg=name)
+    assert_same(
+        flown(which).tables.predictions.reshape(-1, size, size)[: len(theirs)], in_c(program)["predictions"][which]
+    )
+
+
+@needs_c
+@programs
+@pytest.mark.parametrize("which", [0, 5, 8])
+def test_every_message_is_the_same(program: native.Program, which: int) -> None:
+    tables = flown(which).tables
+    count = int(tables.counts[MESSAGES])
+    ours, theirs = tables.messages.reshape(-1, native.MESSAGE_COLUMNS)[:count], in_c(program)["messages"][which]
+    assert count > 10
+    assert_same(ours, theirs[:count])
+    assert np.isnan(theirs[count:]).all()
+
+
+def metrics_in_c(program: native.Program, which: int) -> Metrics:
+    """Our metrics, made from the sums of the C program."""
+    flying, ours = in_c(program), flown(which)
+    rows = ours.tables.scores.reshape(len(ours.plan.vehicles), -1).copy()
+    for row, sums in zip(rows, flying["vehicles"][which], strict=True):
+        named = dict(zip(native.VEHICLE_SUMS, sums, strict=True))
+        for record in (Score, Formation, Talk):
+            put(row, SCORES.offsets[record], record, named)
+    fleet = ours.tables.fleet_score.copy()
+    put(
+        fleet,
+        FLEET_SCORES.offsets[FleetScore],
+        FleetScore,
+        dict(zip(native.FLEET_SUMS, flying["fleet"][which], strict=True)),
+    )
+    histograms = flying["histograms"][which].ravel()
+    return metrics_of(
+        replace(ours, tables=ours.tables._replace(scores=rows.ravel(), fleet_score=fleet, histograms=histograms))
+    )
+
+
+def put(row: np.ndarray, start: int, record: Any, named: dict[str, float]) -> None:
+    for place, name in enumerate(record._fields):
+        if name in named:
+            row[start + place] = named[name]
+
+
+@needs_c
+@programs
+@pytest.mark.parametrize("which", [0, 5, 8])
+def test_every_metric_is_the_same(program: native.Program, which: int) -> None:
+    ours, theirs = metrics_of(flown(which)), metrics_in_c(program, which)
+    pairs = [(ours.fleet, theirs.fleet), *((ours.vehicles[v], theirs.vehicles[v]) for v in ours.vehicles)]
+    for mine, other in pairs:
+        for name, value in mine.items():
+            assert other[name] == pytest.approx(value, rel=SAME, abs=SAME, nan_ok=True), name
+    if not config.DISABLE_JIT:
+        assert sum(math.isfinite(v) for mine, _ in pairs for v in mine.values()) > 50
+
+
+@needs_c
+@programs
+def test_a_number_that_is_none_stops_the_timing(program: native.Program) -> None:
+    laws = {**plans()[0].vehicles[0].laws}
+    laws["current"] = replace(laws["current"], parameters={**laws["current"].parameters, "speed": math.nan})
+    ill = replace(plans()[0], vehicles=(replace(plans()[0].vehicles[0], laws=laws), *plans()[0].vehicles[1:]))
+    with pytest.raises(RuntimeError, match="failed"):
+        native.Flying(program, [ill]).fly(threads=1)
+
+
+def test_missions_differ_in_what_is_drawn() -> None:
+    drawn = native.missions_of(plans())
+    for name in drawn.dtype.names or ():
+        assert len(set(drawn[name].tolist())) == MISSIONS, name
