@@ -16,9 +16,9 @@ import click
 import pytest
 
 from cardume.cli import progress as progress_module
-from cardume.cli.list import describe
 from cardume.cli.main import cli
 from cardume.cli.new import KINDS, template
+from cardume.missions.descriptions import describe
 from cli.stand_ins import Result, Stage, command
 
 Cardume = Callable[..., Result]

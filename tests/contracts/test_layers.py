@@ -13,7 +13,19 @@ ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "src" / "cardume"
 COMPUTE = ("compiler", "maths", "laws.py", "signals.py", "paths", "vehicles", "onboard", "world", "simulation")
 FAMILIES = ("guidance", "compensation", "control", "estimation", "coordination", "messaging")
-FOLDERS = ("cli", "report", "missions", "simulation", "onboard", "world", "paths", "vehicles", "maths", "compiler")
+FOLDERS = (
+    "cli",
+    "lab",
+    "report",
+    "missions",
+    "simulation",
+    "onboard",
+    "world",
+    "paths",
+    "vehicles",
+    "maths",
+    "compiler",
+)
 
 
 def lint(folder: Path) -> subprocess.CompletedProcess[str]:

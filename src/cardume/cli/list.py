@@ -1,8 +1,6 @@
 """`cardume list`: the laws that a mission may name, the built-in missions, the metrics."""
 
 import json
-import math
-import re
 import shutil
 import sys
 import textwrap
@@ -83,7 +81,7 @@ def _families() -> list[dict[str, Any]]:
 def _about(family: str, law: Any) -> str:
     """The first line of the room that a law stands in; of a sensor, whose room holds many families, its own."""
     if KEYS.get(family) == f"sensors.{family}":
-        return str(describe(law)["summary"])
+        return str(_describe(law)["summary"])
     package = law.__module__.rpartition(".")[0]
     return (getattr(sys.modules.get(package), "__doc__", None) or "").strip().partition("\n")[0]
 
@@ -94,7 +92,7 @@ def _laws(family: str) -> list[dict[str, Any]]:
         names = [*families, "missions", "metrics", "formats"]
         hint = nearest(family, names) or "."
         raise click.UsageError(f"There is no family '{family}'{hint} There are {', '.join(names)}")
-    return [describe(law) for law in families[family].values()]
+    return [_describe(law) for law in families[family].values()]
 
 
 def _users_law(name: str, folders: Sequence[Path]) -> list[dict[str, Any]]:
@@ -102,39 +100,13 @@ def _users_law(name: str, folders: Sequence[Path]) -> list[dict[str, Any]]:
     from cardume.missions.available import any_users_law
 
     law = any_users_law(name, [folder.resolve() for folder in folders])
-    return [describe(law) | {"name": name, "key": KEYS.get(law.family, law.family)}]
+    return [_describe(law) | {"name": name, "key": KEYS.get(law.family, law.family)}]
 
 
-def describe(law: Any) -> dict[str, Any]:
-    """A law in plain values: its one line, equation, source, and parameters with unit, default and bounds.
+def _describe(law: Any) -> dict[str, Any]:
+    from cardume.missions.descriptions import describe
 
-    Args:
-        law: of any family.
-    """
-    paragraphs = [part.strip() for part in re.split(r"\n\s*\n", law.doc)]
-    equations = [
-        part for part in paragraphs[1:] if "=" in part and not re.match(r"(Args|Returns|Raises|Source)\b", part)
-    ]
-    source = re.search(r"^\s*Source:\s*(.+?)\s*\Z", law.doc, re.DOTALL | re.MULTILINE)
-    return {
-        "name": law.name,
-        "summary": " ".join(paragraphs[0].split()),
-        "equation": textwrap.dedent(equations[0]) if equations else "",
-        "parameters": [_parameter(parameter) for parameter in law.parameters],
-        "source": " ".join(source[1].split()) if source else "",
-    }
-
-
-def _parameter(parameter: Any) -> dict[str, Any]:
-    return {
-        "name": parameter.name,
-        "default": parameter.default,
-        "unit": parameter.unit,
-        "low": parameter.low if math.isfinite(parameter.low) else None,
-        "high": parameter.high if math.isfinite(parameter.high) else None,
-        "low_open": parameter.low_open,
-        "high_open": parameter.high_open,
-    }
+    return describe(law)
 
 
 def _missions() -> list[dict[str, Any]]:

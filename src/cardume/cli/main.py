@@ -21,6 +21,7 @@ from cardume.cli.calibrate import calibrate
 from cardume.cli.check import check
 from cardume.cli.compare import compare
 from cardume.cli.convert import convert
+from cardume.cli.lab import lab
 from cardume.cli.list import list_
 from cardume.cli.new import new
 from cardume.cli.report import report
@@ -72,7 +73,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, compare, study, report, calibrate, list_, new, convert):
+for _command in (run, check, compare, study, report, lab, calibrate, list_, new, convert):
     cli.add_command(_command)
 
 

@@ -55,11 +55,12 @@ def default_sensors(model: str, is_submerged: bool) -> Sequence[str] | str:
     return below if is_submerged else ("gnss", *below)
 
 
-def catalog(allow_code: Iterable[str | Path] = ()) -> Catalog:
+def catalog(allow_code: Iterable[str | Path] = (), readable: Iterable[Path] | None = None) -> Catalog:
     """What missions may name.
 
     Args:
         allow_code: folders from which laws written as `module:function` may be imported.
+        readable: folders and files that may be read; None for all.
     """
     folders = [Path(folder).resolve() for folder in allow_code]
 
@@ -71,6 +72,7 @@ def catalog(allow_code: Iterable[str | Path] = ()) -> Catalog:
         resolve_law=cast(Any, resolve),
         metrics={name: metric.unit for name, metric in METRICS.items()},
         default_sensors=default_sensors,
+        readable=None if readable is None else tuple(path.resolve() for path in readable),
     )
 
 

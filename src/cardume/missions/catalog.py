@@ -65,13 +65,15 @@ class Catalog:
 
     `laws_of` gives a family's built-in laws by name; `resolve_law` a user's law, or raises with the
     reason; `metrics` maps each metric to its unit; `default_sensors` gives the kinds of sensors, or
-    `"ideal"`, of a model that is submerged or not.
+    `"ideal"`, of a model that is submerged or not; `readable` the folders and files that a mission may
+    name, None where it may name any.
     """
 
     laws_of: Callable[[str], Mapping[str, Law]]
     resolve_law: Callable[[str, str], Law] = _no_user_laws
     metrics: Mapping[str, str] = field(default_factory=dict)
     default_sensors: Callable[[str, bool], Sequence[str] | str] = _default_sensors
+    readable: tuple[Path, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

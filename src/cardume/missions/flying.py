@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -81,10 +82,26 @@ def flight_of(name: str, planned: Planned, flown: Flown, wall_seconds: float = m
         failure=failure_of(trouble) if trouble else None,
         flown=flown.ticks * plan.tick,
         wall_seconds=wall_seconds,
-        reference_path=outline(planned.reference)[:, 1:],
-        own_paths=tuple(outline(v.path)[:, 1:] for v in plan.vehicles),
+        reference_path=line_of(planned.reference),
+        own_paths=tuple(line_of(v.path) for v in plan.vehicles),
         events=events_of(flown),
     )
+
+
+def line_of(path: np.ndarray) -> np.ndarray:
+    """Points (n, 2) [m] along a path, north and east; of one that was asked for lately, without work.
+
+    Args:
+        path: [any] (n,) path table.
+    """
+    return _line_of(path.tobytes())
+
+
+@lru_cache(maxsize=64)
+def _line_of(path: bytes) -> np.ndarray:
+    points = outline(np.frombuffer(path))[:, 1:]
+    points.flags.writeable = False  # it is handed out again
+    return points
 
 
 def _messages(plan: Plan, flown: Flown) -> dict[str, np.ndarray]:

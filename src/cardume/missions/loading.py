@@ -57,7 +57,23 @@ def parse_mission(
     Raises:
         MissionError: with the source, line and key of every problem.
     """
-    tree = parse_yaml(text, source)
+    return mission_of_tree(parse_yaml(text, source), catalog, overrides, directory=directory)
+
+
+def mission_of_tree(
+    tree: Node, catalog: Catalog, overrides: Iterable[str] = (), *, directory: str | Path = "."
+) -> Mission:
+    """The mission in a tree of values, which stays as it is.
+
+    Args:
+        tree: as `parse_yaml` gives it.
+        catalog: the laws and metrics that exist.
+        overrides: what `--set` gives, as `vehicles.port.depth=5 m`.
+        directory: what file names in the mission are relative to.
+
+    Raises:
+        MissionError: with the source, line and key of every problem.
+    """
     if not isinstance(tree.value, dict):
         raise tree.error(f"given {tree.given()}; a mission is a mapping, a line 'key: value' for each key")
     if is_varying(tree):

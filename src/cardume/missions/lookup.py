@@ -101,7 +101,12 @@ def law_fields(law: Law, announced: Mapping[str, float] | None = None) -> tuple[
     known = announced or {}
     numbers = tuple(
         Field(
-            parameter.name, _quantity(parameter), float(known.get(parameter.name, parameter.default)), None, False, ""
+            parameter.name,
+            _quantity(parameter, law.family),
+            float(known.get(parameter.name, parameter.default)),
+            None,
+            False,
+            "",
         )
         for parameter in law.parameters
     )
@@ -143,10 +148,10 @@ def inlined_laws(kind: Kind) -> list[Laws]:
     return [inner for inner in kinds if isinstance(inner, Laws) and inner.inlined]
 
 
-def _quantity(parameter: Parameter) -> Quantity:
+def _quantity(parameter: Parameter, family: str) -> Quantity:
     low, high = max(parameter.low, -HUGE), min(parameter.high, HUGE)
     bounds = Bounds(low, high, parameter.low_open and low == parameter.low, parameter.high_open)
-    return Quantity(parameter.unit, bounds, in_ticks=parameter.name == "period")
+    return Quantity(parameter.unit, bounds, in_ticks=parameter.name == "period" and family != "current")
 
 
 def _user_law(kind: Laws, name: str, named: Node, context: Context) -> Law:

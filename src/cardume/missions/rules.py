@@ -40,10 +40,10 @@ def _step_rules(mission: Mission) -> Iterator[tuple[str, str]]:
 
 
 def _period_rules(mission: Mission) -> Iterator[tuple[str, str]]:
-    """Whatever recurs does so every so many ticks."""
+    """Whatever vehicles do again and again they do every so many ticks; the tide does not."""
     periods = [("log_period", mission.log_period)]
     for key, value in values_of(mission):
-        if isinstance(value, LawChoice) and "period" in value.parameters:
+        if isinstance(value, LawChoice) and value.family != "current" and "period" in value.parameters:
             periods.append((f"{key}.period", value.parameters["period"]))
     tick = mission.tick
     for key, period in periods:

@@ -26,7 +26,7 @@ from cardume.missions.schema import (
 from cardume.missions.source import nearest_file
 from cardume.missions.tree import SAFE_NAME, Node
 from cardume.missions.wording import unknown, wanted
-from cardume.units import parse_quantity
+from cardume.units import parse_quantity, show_text
 
 
 def refused(kind: Kind, node: Node) -> MissionError:
@@ -121,6 +121,7 @@ def _file(kind: File, node: Node, context: Context) -> str:
     if not isinstance(node.value, str) or not node.value.isprintable() or not node.value:
         raise refused(kind, node)
     path = Path(os.path.abspath(context.directory / node.value))
+    _refuse_outside(path, node, context.catalog.readable)
     try:
         is_file, is_there = path.is_file(), path.exists()
     except OSError as problem:
@@ -130,6 +131,14 @@ def _file(kind: File, node: Node, context: Context) -> str:
     if not is_file:
         raise node.error(f"{node.given()} is not a regular file; must be {wanted(kind)}")
     return str(path)
+
+
+def _refuse_outside(path: Path, node: Node, readable: tuple[Path, ...] | None) -> None:
+    """Before the disk is asked anything about it, so that nobody learns what lies elsewhere."""
+    real = Path(os.path.realpath(path))
+    if readable is not None and not any(real.is_relative_to(allowed) for allowed in readable):
+        folder = show_text(str(readable[0]), 500)
+        raise node.error(f"{node.given()} lies outside of {folder}; only files in that folder are read here")
 
 
 @read_value.register

@@ -61,16 +61,25 @@ def data_file(relative: Path) -> Path | None:
     return next((f / relative for f in folders if (f / relative).is_file()), None)
 
 
+def own_data() -> list[Path]:
+    """The files outside of this package that built-in missions read on this machine."""
+    return [*filter(None, map(data_file, (LAWNMOWER, RADAR))), _synthetic_file()]
+
+
 @cache
 def synthetic_radar() -> Path:
     """A generated field in the place of the radar's, labelled synthetic; written once per user."""
     from cardume.missions.currents import synthetic_cadiz
 
-    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "cardume"
-    file = root / "synthetic_cadiz.nc"
+    file = _synthetic_file()
     if not file.is_file():
-        root.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(parents=True, exist_ok=True)
         draft = file.with_suffix(f".{os.getpid()}.nc")
         synthetic_cadiz(draft)
         draft.replace(file)
     return file
+
+
+def _synthetic_file() -> Path:
+    root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return root / "cardume" / "synthetic_cadiz.nc"

@@ -74,21 +74,31 @@ def numbers_table(flight: Flight) -> str:
     for column, cells in known:
         texts = cells if is_fleet else cells[:-1]
         numbers = "".join(f"<td>{html.escape(text)}</td>" for text in texts)
-        rows.append(f'<tr title="{html.escape(_meaning(column.metric))}"><td>{_label(column)}</td>{numbers}</tr>')
+        title, words = html.escape(meaning_of(column.metric)), html.escape(words_of(column))
+        rows.append(f'<tr title="{title}"><td>{words}</td>{numbers}</tr>')
     head = f"{_vehicle_heads(flight, len(shown))}{'<th>fleet</th>' if is_fleet else ''}"
     return _table("numbers", f"<tr><th></th>{head}</tr>", "".join(rows))
 
 
-def _label(column: Column) -> str:
-    """A metric in words, its unit last."""
+def words_of(column: Column) -> str:
+    """A metric in words, its unit last.
+
+    Args:
+        column: of the table of numbers.
+    """
     words = " ".join(re.sub(r"\[.*?\]", "", f"{column.group} {column.heading}").split()).replace(
         "coord.", "coordination"
     )
     unit = METRICS[column.metric].unit if column.metric in METRICS else ""
-    return html.escape(f"{words} [{unit}]" if unit else words)
+    return f"{words} [{unit}]" if unit else words
 
 
-def _meaning(metric: str) -> str:
+def meaning_of(metric: str) -> str:
+    """What a column of the table of numbers says, in a sentence.
+
+    Args:
+        metric: of the column.
+    """
     return METRICS[metric].meaning if metric in METRICS else "share of the messages meant for it that arrived"
 
 

@@ -1,0 +1,1 @@
+"""The laboratory: a page on this machine that flies a mission again while a slider moves."""
