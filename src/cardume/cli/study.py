@@ -1,7 +1,9 @@
 """`cardume study`: one mission with values that are drawn or swept, flown as often as it takes."""
 
 import shlex
+import shutil
 import sys
+import textwrap
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,10 +26,10 @@ if TYPE_CHECKING:
 
     from cardume.studies.forecast import Forecast
 
-DONE, FAILED = 0, 3
+DONE, FAILED, BUG = 0, 3, 4
 RUNS = Path("runs")
 SAMPLINGS = ("monte_carlo", "latin_hypercube", "sobol")
-MOST_CASES = 12  # shown
+WIDEST_TEXT = 100  # characters
 
 
 class Request(NamedTuple):
@@ -43,6 +45,7 @@ class Request(NamedTuple):
     seed: int | None
     overrides: tuple[str, ...]
     allow_code: tuple[Path, ...]
+    no_figures: bool
     quiet: bool
     as_json: bool
 
@@ -68,6 +71,7 @@ class Request(NamedTuple):
 @click.option("--resume", is_flag=True, help="Continue a study that was interrupted, killed or damaged.")
 @seed_option
 @set_option
+@click.option("--no-figures", is_flag=True, help="Draw nothing.")
 @allow_code_option
 @quiet_option
 @json_option
@@ -181,8 +185,7 @@ def _end(request: Request, directory: Path, runs: "xarray.Dataset", stopping: St
             err=True,
         )
         return stopping.exit_code or DONE
-    _report(request, directory, runs, failed)
-    return FAILED if failed == status.size else DONE
+    return _report(request, directory, runs, failed)
 
 
 def _same(request: Request) -> list[str]:
@@ -197,37 +200,80 @@ def _same(request: Request) -> list[str]:
     return words
 
 
-def _report(request: Request, directory: Path, runs: "xarray.Dataset", failed: int) -> None:
+def _report(request: Request, directory: Path, runs: "xarray.Dataset", failed: int) -> int:
     from cardume.studies.summing_up import summarize_study, write_summary
 
-    summary = summarize_study(runs)
+    summary, problem = summarize_study(runs), None
     write_summary(directory, summary)
+    if not request.no_figures:
+        problem = _draw(directory, runs)
     if request.as_json:
         import json
 
         click.echo(json.dumps(summary, indent=2, allow_nan=False))
     elif not request.quiet:
-        _say_numbers(request, runs, summary)
-        click.echo(f"\nWritten to {directory}\n  ledger.txt, mission.yaml, study.zarr, summary.json")
-        python = f"import cardume; print(cardume.open_study({str(directory)!r}))"
-        click.echo(f"\nNext\n  python -c {shlex.quote(python)}\n      every number of every run, for xarray")
+        _say_numbers(request, runs)
+        files = sorted(path.name + "/" * path.is_dir() for path in directory.iterdir() if path.name[0] != ".")
+        click.echo(f"\nWritten to {directory}\n{_filled(', '.join(files), indent='  ')}")
+        _say_next(request, directory, runs)
     if failed:
         click.echo(
             f"{failed:,} of {runs['status'].size:,} missions failed; `failure` in the data set says why", err=True
         )
+    if failed == runs["status"].size:
+        return FAILED
+    return _own_up(problem) if problem is not None else DONE
 
 
-def _say_numbers(request: Request, runs: "xarray.Dataset", summary: dict[str, Any]) -> None:
-    cases = f", {len(summary['cases'])} cases" if summary["swept"] else ""
-    count = runs.sizes["run"]
-    click.echo(f"\n{click.style(request.mission, bold=True)}{cases}, {count:,} runs each, {summary['sampling']}\n")
-    for case in summary["cases"][:MOST_CASES]:
-        if case["label"]:
-            click.echo(case["label"])
-        for name, chance in case["requirements"].items():
-            low, high = chance["interval"]
-            click.echo(f"  {name:<40} held in {chance['share']:.1%}  ({low:.1%} to {high:.1%})")
-        for name, metric in case["metrics"].items():
-            click.echo(f"  {name:<40} {metric['mean']:.4g}  ({metric['low']:.4g} to {metric['high']:.4g})")
-    if len(summary["cases"]) > MOST_CASES:
-        click.echo(f"... and {len(summary['cases']) - MOST_CASES} more cases")
+def _draw(directory: Path, runs: "xarray.Dataset") -> Exception | None:
+    """Draw the figures; a study is not lost for one that cannot be drawn."""
+    from cardume.report.study.figures import save_study_figures
+
+    try:
+        save_study_figures(runs, directory / "figures")
+    except OSError:
+        raise
+    except Exception as problem:
+        return problem
+    return None
+
+
+def _own_up(problem: Exception) -> int:
+    from cardume.cli.bugs import save_traceback
+
+    where = save_traceback(problem)
+    click.echo(f"error: the figures could not be drawn, a bug in cardume; the details are in {where}", err=True)
+    return BUG
+
+
+def _say_numbers(request: Request, runs: "xarray.Dataset") -> None:
+    from cardume.report.study.table import study_table
+    from cardume.report.study.words import study_words
+
+    count, sampling = runs.sizes["run"], str(runs.attrs["sampling"]).replace("_", " ")
+    cases = runs["status"].size // count
+    what = f"{cases} cases, {count:,} runs each" if cases > 1 else f"{count:,} runs"
+    how = "" if sampling == "monte carlo" else f", by {sampling}"
+    click.echo(f"\n{click.style(request.mission, bold=True)}, {what}{how}\n")
+    click.echo(study_table(runs, shutil.get_terminal_size().columns))
+    click.echo()
+    for sentence in study_words(runs):
+        click.echo(_filled(sentence))
+
+
+def _say_next(request: Request, directory: Path, runs: "xarray.Dataset") -> None:
+    python = f"import cardume; print(cardume.open_study({str(directory)!r}))"
+    more = ["cardume", "study", request.mission, "--runs", str(4 * runs.sizes["run"]), *_same(request)]
+    click.echo(f"\nNext\n  {shlex.join(more)}\n      half the width of every interval")
+    click.echo(f"  python -c {_quoted(python)}\n      every number of every run, in xarray")
+
+
+def _quoted(text: str) -> str:
+    return f'"{text}"' if not set(text) & set('"$`\\\\!') else shlex.quote(text)
+
+
+def _filled(text: str, indent: str = "") -> str:
+    room = max(40, min(shutil.get_terminal_size().columns, WIDEST_TEXT))
+    return textwrap.fill(
+        text, room, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+    )
