@@ -145,12 +145,6 @@ def test_what_cannot_be_studied_is_refused(overrides: tuple[str, ...], given: di
         cardume.study(read(LINE, SHORT, *overrides), **given)
 
 
-def test_more_than_fits_in_memory_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cardume.studies.beginning.MEMORY", 100_000)
-    with pytest.raises(InputError, match=r"takes up to .*; give it a directory"):
-        cardume.study(read(NOISY, DRAWN, SHORT), 5)
-
-
 def test_a_sweep_of_what_is_not_random_is_flown_once_each() -> None:
     found = cardume.study(read(LINE, SWEPT), 1)
     assert found.sizes["run"] == 1

@@ -4,10 +4,9 @@ import hashlib
 import os
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -34,16 +33,16 @@ from cardume.studies.store import (
     STORE_NAME,
     bytes_free,
     bytes_needed,
-    create_arrays,
     create_study,
     files_of,
+    remove_partial_files,
+    write_block,
 )
 from cardume.units import printable
 
 MOST_MISSIONS = 100_000_000
 LARGEST_SEED = 2**63 - 1
 SPARE = 1000  # seeds above those of the runs, for flights that are only tried
-MEMORY = 4 * 10**9  # [bytes] that a study may hold where it is given no directory
 
 
 @dataclass
@@ -51,7 +50,7 @@ class Begun:
     """A study that can be flown.
 
     Attributes:
-        directory: where it is kept; None in memory.
+        directory: where it is kept.
         text: its mission, resolved.
         cases: of it.
         layout: of its data set.
@@ -59,10 +58,10 @@ class Begun:
         seconds: [s] that one processor takes for one mission.
         allow_code: folders from which laws may be imported.
         notes: worth knowing.
-        store: of its arrays.
+        ledger: held by this process, once it is there.
     """
 
-    directory: Path | None
+    directory: Path
     text: str
     cases: Cases
     layout: Layout
@@ -70,8 +69,7 @@ class Begun:
     seconds: float
     allow_code: tuple[str, ...]
     notes: tuple[str, ...]
-    store: Any = None
-    ledger: Ledger | None = field(default=None)
+    ledger: Ledger | None = None
 
     def create(self, stack: ExitStack) -> None:
         """Make its place, with nothing flown in it yet.
@@ -79,23 +77,25 @@ class Begun:
         Args:
             stack: that will let go of it.
         """
-        if self.directory is None:
-            self.store = needed("zarr.storage", "zarr").MemoryStore()
-            create_arrays(self.store, self.layout)
-            return
         with new_directory(self.directory) as folder:
             create_study(folder, self.layout, self.cases.mission.to_yaml(self.directory))
-        self.store = self.directory / STORE_NAME
         self.ledger = stack.enter_context(Ledger(self.directory))
+        remove_partial_files(self.directory)
 
-    def note(self, number: int) -> None:
-        """Note that a portion is written.
+    def keep(self, number: int, block: Mapping[str, np.ndarray]) -> None:
+        """Write a portion, and note that it is there.
 
         Args:
             number: of it.
+            block: of each variable.
+
+        Raises:
+            OSError: the disk is full, or refused otherwise.
         """
-        if self.ledger is not None and self.directory is not None:
-            self.ledger.note(number, digest_of(files_of(self.directory, self.layout, self.left[number])))
+        assert self.ledger is not None
+        portion = self.left[number]
+        write_block(self.directory, self.layout, portion, block)
+        self.ledger.note(number, digest_of(files_of(self.directory, self.layout, portion).values()))
 
     def tasks(self) -> list[Task]:
         """What is left, as it is flown."""
@@ -127,14 +127,14 @@ class Begun:
             seconds=missions * self.seconds / max(slots, 1),
             slots=slots,
             bytes=bytes_needed(self.layout),
-            free=bytes_free(self.directory) if self.directory is not None else 0,
+            free=bytes_free(self.directory),
             directory=self.directory,
             notes=self.notes,
         )
 
 
 def begin(
-    directory: Path | None,
+    directory: Path,
     mission: Mission,
     runs: int | None,
     sampling: str,
@@ -145,7 +145,7 @@ def begin(
     """A new study, of which nothing exists yet.
 
     Args:
-        directory: to keep it in; None for memory.
+        directory: to keep it in.
         mission: with what varies in it.
         runs: of each case.
         sampling: monte_carlo, latin_hypercube or sobol.
@@ -158,8 +158,7 @@ def begin(
     """
     needed("zarr", "zarr")
     needed("xarray", "xarray")
-    if directory is not None:
-        refuse_taken(directory)
+    refuse_taken(directory)
     text = mission.to_yaml()
     cases = cases_of(parse_mission(text, catalog(allow_code), source="the mission"))
     count = _checked(runs, cases)
@@ -235,13 +234,8 @@ def _checked(runs: int | None, cases: Cases) -> int:
     return runs
 
 
-def _refuse_too_large(directory: Path | None, layout: Layout) -> None:
-    size = bytes_needed(layout)
-    if directory is None:
-        if size > MEMORY:
-            raise InputError(f"the study takes up to {in_bytes(size)}; give it a directory to be kept in")
-        return
-    free = bytes_free(directory)
+def _refuse_too_large(directory: Path, layout: Layout) -> None:
+    size, free = bytes_needed(layout), bytes_free(directory)
     if size > free:
         raise InputError(
             f"the study takes up to {in_bytes(size)}, and {in_bytes(free)} are free where {printable(str(directory))}"

@@ -29,9 +29,9 @@ class Forecast:
         complete: flown already, when it continues.
         seconds: [s] that flying will take.
         slots: missions that are flown at once.
-        bytes: on the disk, at most; 0 in memory.
+        bytes: on the disk, at most.
         free: bytes there.
-        directory: where to; None in memory.
+        directory: where to.
         notes: worth knowing.
     """
 
@@ -41,7 +41,7 @@ class Forecast:
     slots: int
     bytes: int
     free: int
-    directory: Path | None
+    directory: Path
     notes: tuple[str, ...] = ()
 
 

@@ -32,7 +32,7 @@ LONGEST_DIFFERENCE = 60  # lines
 
 def resume_at(
     stack: ExitStack,
-    directory: Path | None,
+    directory: Path,
     mission: Mission,
     runs: int | None,
     sampling: str | None,
@@ -54,8 +54,6 @@ def resume_at(
         DataError: it is damaged, or of another version.
         InputError: it is another study, or another process flies it.
     """
-    if directory is None:
-        raise InputError("--resume continues what is in a directory; say which with -o DIR")
     attrs = read_attributes(directory)
     _refuse_another(directory, attrs, mission, runs, sampling)
     text = attrs["mission"]
@@ -79,8 +77,7 @@ def resume_at(
     seconds = 0.0
     if left:
         seconds = Trial(cases, layout.seeds, layout.chances, allow_code, progress).seconds()
-    store = directory / STORE_NAME
-    return Begun(directory, text, cases, layout, left, seconds, allow_code, notes, store, ledger)
+    return Begun(directory, text, cases, layout, left, seconds, allow_code, notes, ledger)
 
 
 def _refuse_another(
@@ -124,7 +121,7 @@ def _complete(
     found = set()
     for done, (number, digest) in enumerate(noted.items()):
         progress("verify", done, len(noted))
-        if number in portions and digest_of(files_of(directory, layout, portions[number])) == digest:
+        if number in portions and digest_of(files_of(directory, layout, portions[number]).values()) == digest:
             found.add(number)
     if noted:
         progress("verify", len(noted), len(noted))

@@ -5,8 +5,10 @@ DIR/ledger.txt      which portions are complete, with their checksums
 DIR/mission.yaml    the mission with every default written
 """
 
+import glob
 import json
 import math
+import os
 import shutil
 import warnings
 from collections.abc import Iterator, Mapping
@@ -18,6 +20,7 @@ import numpy as np
 
 from cardume.errors import DataError
 from cardume.studies.cases import Cases
+from cardume.studies.chunks import codecs, encoded, write_chunk
 from cardume.studies.layout import LAST, REQUIREMENT, RUN, VEHICLE, Layout, Portion, Variable
 from cardume.studies.ledger import digest_of, write_ledger
 from cardume.studies.sampling import needed
@@ -44,39 +47,16 @@ def create_study(folder: Path, layout: Layout, mission: str) -> None:
         layout: of the data set.
         mission: its text, as it is to stand beside the store.
     """
-    create_arrays(folder / STORE_NAME, layout)
+    _create_arrays(folder / STORE_NAME, layout)
     (folder / MISSION_NAME).write_text(mission, encoding="utf-8")
     write_ledger(folder, digest_of(describing_files(folder, layout)))
 
 
-def create_arrays(store: Any, layout: Layout) -> None:
-    """The arrays of a data set, coordinates filled, all else empty.
-
-    Args:
-        store: a folder that does not exist, or a store of zarr's.
-        layout: of the data set.
-    """
-    zarr = needed("zarr", "zarr")
-    with _quiet():
-        group = zarr.open_group(store, mode="w", zarr_format=3, attributes={MARK: FORMAT_VERSION, **layout.attrs})
-        for axis in layout.axes:
-            _fill(group, axis.key, axis.values, {"units": axis.unit, "long_name": axis.key, "role": "swept"})
-        _fill(group, RUN, layout.seeds, {"long_name": "seed"})
-        _fill(group, VEHICLE, np.array(layout.vehicles), {"long_name": "vehicle"})
-        _fill(group, REQUIREMENT, np.array(layout.requirements, dtype="U"), {"long_name": "what is required"})
-        for key, values in layout.chances.items():
-            about = {"role": "chance", "key": key, "long_name": f"chance below which the value of {key} lies"}
-            _fill(group, CHANCE + key, values, about, (RUN,))
-        for variable in layout.variables.values():
-            _create(zarr, group, layout, variable)
-        zarr.consolidate_metadata(store)
-
-
-def write_block(group: Any, layout: Layout, portion: Portion, block: Mapping[str, np.ndarray]) -> None:
+def write_block(directory: Path, layout: Layout, portion: Portion, block: Mapping[str, np.ndarray]) -> None:
     """Write a portion; each file appears complete or not at all, that of LAST after all others.
 
     Args:
-        group: from `open_group`.
+        directory: of the study.
         layout: of the data set.
         portion: where.
         block: of each variable.
@@ -84,39 +64,28 @@ def write_block(group: Any, layout: Layout, portion: Portion, block: Mapping[str
     Raises:
         OSError: the disk is full, or refused otherwise.
     """
-    zarr = needed("zarr", "zarr")
-    place = tuple(slice(start, stop) for start, stop in zip(portion.starts, portion.stops, strict=True))
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        for name in (*(name for name in layout.variables if name != LAST), LAST):
-            if block[name].size:
-                group[name][place] = block[name]
+    files = files_of(directory, layout, portion)
+    for name in (*(name for name in files if name != LAST), LAST):
+        variable = layout.variables[name]
+        shape = (*layout.chunk, *layout.sizes_after(variable))
+        write_chunk(files[name], encoded(block[name], shape, variable.fill))
 
 
-def open_group(store: Any) -> Any:
-    """The arrays of a store, by name, to write to.
-
-    Args:
-        store: a folder, or a store of zarr's.
-    """
-    zarr = needed("zarr", "zarr")
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        group = zarr.open_group(store, mode="r+", use_consolidated=False)
-        return dict(group.arrays())
-
-
-def files_of(directory: Path, layout: Layout, portion: Portion) -> Iterator[Path]:
-    """The files of a portion, in an order that does not change.
+def files_of(directory: Path, layout: Layout, portion: Portion) -> dict[str, Path]:
+    """The file of each variable, those without a number excepted, in an order that does not change.
 
     Args:
         directory: of the study.
         layout: of the data set.
-        portion: which.
+        portion: whose.
     """
-    for _, variable in sorted(layout.variables.items()):
+    found = {}
+    for name, variable in sorted(layout.variables.items()):
         after = layout.sizes_after(variable)
         if 0 not in after:
             place = (*portion.place, *(0 for _ in after))
-            yield Path(directory, STORE_NAME, variable.name, "c", *map(str, place))
+            found[name] = Path(directory, STORE_NAME, name, "c", *map(str, place))
+    return found
 
 
 def describing_files(directory: Path, layout: Layout) -> list[Path]:
@@ -182,16 +151,17 @@ def open_study(directory: str | Path) -> "xarray.Dataset":
     """
     directory = Path(directory)
     read_attributes(directory)
-    return _opened(directory / STORE_NAME, directory)
-
-
-def open_arrays(store: Any) -> "xarray.Dataset":
-    """The data set in a store of zarr's.
-
-    Args:
-        store: that `create_arrays` filled.
-    """
-    return _opened(store, None)
+    opening = needed("xarray", "xarray")
+    needed("zarr", "zarr")
+    try:
+        with _quiet():
+            found = opening.open_zarr(directory / STORE_NAME, chunks=None, consolidated=True, zarr_format=3)
+        texts = {name: values.values for name, values in found.coords.items() if values.dtype.kind not in "biuf"}
+    except Exception as problem:  # whatever zarr or xarray find wrong
+        raise damaged(directory, problem) from None
+    # plain texts: not every tool knows the kind in which NumPy 2 gives texts of any length
+    plain = {name: found[name].copy(data=np.array([str(text) for text in values])) for name, values in texts.items()}
+    return cast("xarray.Dataset", found.assign_coords(plain))
 
 
 def read_attributes(directory: Path) -> dict[str, Any]:
@@ -264,13 +234,45 @@ def bytes_free(place: Path) -> int:
 
 
 def remove_partial_files(directory: Path) -> None:
-    """Remove what a killed process left half-written.
+    """Remove what killed processes left half-written: files in the study, and studies that were not whole yet.
 
     Args:
         directory: of the study.
     """
     for file in (directory / STORE_NAME).rglob("*.partial"):
         file.unlink(missing_ok=True)
+    for folder in directory.absolute().parent.glob(f".{glob.escape(directory.name)}.*.partial"):
+        number = folder.name.split(".")[-2]
+        if number.isdigit() and not _is_alive(int(number)):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _create_arrays(store: Path, layout: Layout) -> None:
+    """The arrays of a data set, coordinates filled, all else empty."""
+    zarr = needed("zarr", "zarr")
+    with _quiet():
+        group = zarr.open_group(store, mode="w", zarr_format=3, attributes={MARK: FORMAT_VERSION, **layout.attrs})
+        for axis in layout.axes:
+            _fill(group, axis.key, axis.values, {"units": axis.unit, "long_name": axis.key, "role": "swept"})
+        _fill(group, RUN, layout.seeds, {"long_name": "seed"})
+        _fill(group, VEHICLE, np.array(layout.vehicles), {"long_name": "vehicle"})
+        _fill(group, REQUIREMENT, np.array(layout.requirements, dtype="U"), {"long_name": "what is required"})
+        for key, values in layout.chances.items():
+            about = {"role": "chance", "key": key, "long_name": f"chance below which the value of {key} lies"}
+            _fill(group, CHANCE + key, values, about, (RUN,))
+        for variable in layout.variables.values():
+            _create(zarr, group, layout, variable)
+        zarr.consolidate_metadata(store)
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        pass  # somebody else's
+    return True
 
 
 def _fill(group: Any, name: str, values: np.ndarray, attrs: dict[str, Any], dims: tuple[str, ...] = ()) -> None:
@@ -281,7 +283,7 @@ def _fill(group: Any, name: str, values: np.ndarray, attrs: dict[str, Any], dims
         chunks=(max(1, len(values)),),
         dtype=str if is_text else values.dtype,
         dimension_names=list(dims or (name,)),
-        compressors=_codecs(),
+        compressors=codecs(),
         attributes={key: value for key, value in attrs.items() if value},
         config={"write_empty_chunks": True},
     )
@@ -298,34 +300,15 @@ def _create(zarr: Any, group: Any, layout: Layout, variable: Variable) -> None:
         dtype=str if variable.type == "str" else variable.type,
         fill_value=variable.fill,
         dimension_names=[*layout.dims[:-1], *variable.dims],
-        compressors=_codecs(),
+        compressors=codecs(),
         attributes=dict(variable.attrs),
     )
-
-
-def _codecs() -> list[Any]:
-    codecs = needed("zarr.codecs", "zarr")
-    return [codecs.ZstdCodec(level=1), codecs.Crc32cCodec()]
 
 
 def _variable(name: str, array: Any, swept: int) -> Variable:
     kind = str(array.dtype)
     kind = kind if kind in SIZES else "str"
     return Variable(name, tuple(array.metadata.dimension_names[swept:]), kind, array.fill_value, dict(array.attrs))
-
-
-def _opened(store: Any, directory: Path | None) -> "xarray.Dataset":
-    opening = needed("xarray", "xarray")
-    needed("zarr", "zarr")
-    try:
-        with _quiet():
-            found = opening.open_zarr(store, chunks=None, consolidated=True, zarr_format=3)
-        texts = {name: values.values for name, values in found.coords.items() if values.dtype.kind not in "biuf"}
-    except Exception as problem:  # whatever zarr or xarray find wrong
-        raise damaged(directory or Path(), problem) from None
-    # plain texts: not every tool knows the kind in which NumPy 2 gives texts of any length
-    plain = {name: found[name].copy(data=np.array([str(text) for text in values])) for name, values in texts.items()}
-    return cast("xarray.Dataset", found.assign_coords(plain))
 
 
 @contextmanager

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from cardume.errors import InputError
@@ -15,7 +16,7 @@ from cardume.studies.flying import Progress
 from cardume.studies.forecast import Forecast
 from cardume.studies.layout import block_of
 from cardume.studies.resuming import resume_at
-from cardume.studies.store import open_arrays, open_group, open_study, write_block
+from cardume.studies.store import open_study
 from cardume.units import printable
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def study(
     Args:
         mission: file, name of a built-in mission, or what `load` gave; with a distribution, a sweep, or noise in it.
         runs: of each case; what continues knows its own.
-        directory: where to keep it: a new one, or that of the study that continues. None keeps it in memory.
+        directory: where to keep it: a new one, or that of the study that continues; None keeps it in memory alone.
         sampling: monte_carlo (if None), latin_hypercube or sobol.
         seed: of the first run, and of the sampling, instead of the mission's own.
         overrides: values to change, as `--set` takes them.
@@ -74,11 +75,14 @@ def study(
         InputError: a mission, or a way to fly it, that cannot be.
         ResultsError: the disk is full, or refused otherwise; what was complete is kept.
     """
-    folder, allowed = None if directory is None else Path(directory), tuple(str(place) for place in allow_code)
+    allowed = tuple(str(place) for place in allow_code)
     crew = _crew(workers, scheduler, threads)
     read = open_given(mission, overrides, (), tuple(allow_code))
     read = read if seed is None else replace(read, seed=seed)
+    if resume and directory is None:
+        raise InputError("--resume continues what is in a directory; say which with -o DIR")
     with ExitStack() as stack:
+        folder = Path(directory or Path(stack.enter_context(TemporaryDirectory(prefix="cardume-")), "study"))
         if resume:
             begun = resume_at(stack, folder, read, runs, sampling, allowed, progress)
         else:
@@ -89,12 +93,13 @@ def study(
             begun.create(stack)
         announce(begun.forecast(crew.slots))
         _fly(begun, crew, progress, should_stop)
-    return open_arrays(begun.store) if folder is None else open_study(folder)
+        found = open_study(folder)
+        return found.load() if directory is None else found
 
 
 def _fly(begun: Begun, crew: Crew, progress: Progress, should_stop: Callable[[], bool]) -> None:
     """Fly what is left, and keep each portion as soon as it is there."""
-    arrays, tasks = open_group(begun.store), begun.tasks()
+    tasks = begun.tasks()
     done, total = 0, sum(task.size for task in tasks)
 
     def note(more: int) -> None:
@@ -103,11 +108,9 @@ def _fly(begun: Begun, crew: Crew, progress: Progress, should_stop: Callable[[],
     if tasks:
         progress("study", 0, total)
     for task, tables in crew.fly(tasks, should_stop, note):
-        portion = begun.left[task.number]
-        block = block_of(begun.layout, portion, tables)
+        block = block_of(begun.layout, begun.left[task.number], tables)
         try:
-            write_block(arrays, begun.layout, portion, block)
-            begun.note(task.number)
+            begun.keep(task.number, block)
         except OSError as problem:
             raise _refusal(begun.directory, problem) from None
         done += task.size
@@ -124,7 +127,7 @@ def _crew(workers: int | None, scheduler: str | None, threads: int | None) -> Th
     return Cluster(scheduler, workers or 1)
 
 
-def _refusal(directory: Path | None, problem: OSError) -> ResultsError:
+def _refusal(directory: Path, problem: OSError) -> ResultsError:
     name = printable(str(directory))
     reason = printable(problem.strerror or str(problem))
     what = (
