@@ -93,7 +93,7 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True) -> Tabl
             int(any("bathymetry" in v.laws for v in vehicles)),
             int(any(v.orders.has_phases for v in vehicles)),
             int(plan.is_watched),
-            int(any(v.laws["current"].law.asks_for(Noise) for v in vehicles if "current" in v.laws)),
+            int(any(_noise_pairs(v.laws["current"]) for v in vehicles if "current" in v.laws)),
         ),
         plan.tick,
         _handles(vehicles, size, lanes) if with_laws else np.zeros(size * len(FAMILIES) * COLUMNS, np.int64),
@@ -144,6 +144,8 @@ def join(tables: Sequence[Tables]) -> Tables:
         ValueError: missions that differ in what all lanes share, or in the size of a table.
     """
     full = [*tables, *[tables[-1]] * (WIDTH - len(tables))]
+    noisy = max(t.whole.has_weather for t in full)  # a drawn variation of zero does not keep missions apart
+    full = [t._replace(whole=t.whole._replace(has_weather=noisy)) for t in full]
     first = full[0]
     joined = []
     for name in Tables._fields:
@@ -229,7 +231,7 @@ def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
 
 
 def _noise_pairs(choice: Choice) -> int:
-    """How many pairs of random numbers a sensor's law reads; none where it is told that all its noise is zero.
+    """How many pairs of random numbers a law reads in a tick; none where it is told that all its noise is zero.
 
     Of a user's law it is never known that its noise is zero.
     """

@@ -1,10 +1,24 @@
 """A current that is the same everywhere, and may vary in the course of minutes."""
 
-from cardume.laws import MetersPerSecond, NotNegative, Positive, Radians, Seconds
+from typing import Annotated
+
+from cardume.laws import MetersPerSecond, NotNegative, Once, Positive, Radians, Seconds
 from cardume.maths import sincos
 from cardume.signals import Noise, Water, Where
 from cardume.world.currents.base import current_law
 from cardume.world.currents.variation import Variation, vary
+
+
+def mean_flow(dt: Seconds, speed: NotNegative[MetersPerSecond] = 0.0, towards: Radians = 0.0) -> Water:
+    """The mean, which does not change during a mission.
+
+    Args:
+        dt: [s] tick; not used.
+        speed: [m/s] of the mean.
+        towards: [rad] where the mean flows to, clockwise from north.
+    """
+    s, c = sincos(towards)
+    return Water(speed * c, speed * s)
 
 
 @current_law
@@ -13,8 +27,7 @@ def uniform(
     noise: Noise,
     memory: Variation,
     dt: Seconds,
-    speed: NotNegative[MetersPerSecond] = 0.0,
-    towards: Radians = 0.0,
+    mean: Annotated[Water, Once(mean_flow)],
     variation_sigma: NotNegative[MetersPerSecond] = 0.0,
     variation_time_constant: Positive[Seconds] = 100.0,
 ) -> tuple[Water, Variation]:
@@ -30,8 +43,7 @@ def uniform(
         noise: of the mission's water, the same for all vehicles.
         memory: the variation of the tick before; the first one is drawn from the stationary distribution.
         dt: [s] tick.
-        speed: [m/s] of the mean.
-        towards: [rad] where the mean flows to, clockwise from north.
+        mean: of the parameters that `mean_flow` names.
         variation_sigma: [m/s] standard deviation of the variation, in each of north and east.
         variation_time_constant: [s] T.
 
@@ -42,5 +54,4 @@ def uniform(
     autocovariance and by the drift above.
     """
     variation = vary(memory, noise, dt, variation_sigma, variation_time_constant)
-    s, c = sincos(towards)
-    return Water(speed * c + variation.north, speed * s + variation.east), variation
+    return Water(mean.north + variation.north, mean.east + variation.east), variation
