@@ -38,7 +38,7 @@ SILENCE = Noise(0.0, 0.0, 0.0, 0.0)
 
 @given(st.floats(0.0, 3.0), st.floats(-7.0, 7.0))
 def test_a_uniform_current_flows_towards_its_direction(speed: float, towards: float) -> None:
-    water, _ = uniform(HERE, Noise(1.0, -2.0, 3.0, 4.0), Variation(), 0.1, speed, towards)
+    water, _ = uniform(HERE, Noise(1.0, -2.0, 3.0, 4.0), Variation(), 0.1, speed=speed, towards=towards)
     assert water.north == pytest.approx(speed * math.cos(towards), abs=1e-15)
     assert water.east == pytest.approx(speed * math.sin(towards), abs=1e-15)
 
@@ -50,7 +50,9 @@ def responses(steps: int, dt: float, sigma: float, time_constant: float) -> np.n
         memory = Variation()
         for k in range(steps):
             noise = Noise(1.0 if k == draw else 0.0, 9.0, 0.0, 0.0)
-            water, memory = uniform(HERE, noise, memory, dt, 0.0, 0.0, sigma, time_constant)
+            water, memory = uniform(
+                HERE, noise, memory, dt, variation_sigma=sigma, variation_time_constant=time_constant
+            )
             answer[k, draw] = water.north
     return answer
 
@@ -96,16 +98,16 @@ def test_two_vehicles_feel_the_same_variation() -> None:
     one = two = Variation()
     elsewhere = Where(-900.0, 50.0, 20.0, 6.0, NO_FIELD)
     for noise in noises:
-        water, one = uniform(HERE, noise, one, 0.1, 0.2, 1.0, 0.05, 100.0)
-        other, two = uniform(elsewhere, noise, two, 0.1, 0.2, 1.0, 0.05, 100.0)
+        water, one = uniform(HERE, noise, one, 0.1, speed=0.2, towards=1.0, variation_sigma=0.05)
+        other, two = uniform(elsewhere, noise, two, 0.1, speed=0.2, towards=1.0, variation_sigma=0.05)
         assert water == other
 
 
 def test_no_variation_leaves_the_mean_alone() -> None:
     memory = Variation()
-    mean, _ = uniform(HERE, SILENCE, memory, 0.1, 0.3, 0.7)
+    mean, _ = uniform(HERE, SILENCE, memory, 0.1, speed=0.3, towards=0.7)
     for k in range(5):
-        water, memory = uniform(HERE, Noise(k, -k, k, 1.0), memory, 0.1, 0.3, 0.7, 0.0, 100.0)
+        water, memory = uniform(HERE, Noise(k, -k, k, 1.0), memory, 0.1, speed=0.3, towards=0.7)
         assert water == mean
 
 
@@ -212,7 +214,7 @@ def test_a_gridded_current_is_the_grid_plus_the_variation() -> None:
     for k, noise in enumerate(noises):
         place = Where(100.0 * k, -50.0 * k, 4.0, 30.0 * k, GRID)
         water, one = gridded(place, noise, one, 0.1, 0.05, 100.0)
-        shaken, two = uniform(place, noise, two, 0.1, 0.0, 0.0, 0.05, 100.0)
+        shaken, two = uniform(place, noise, two, 0.1, variation_sigma=0.05)
         still = water_at(GRID, place.north, place.east, place.depth, place.time)
         assert water == pytest.approx((still.north + shaken.north, still.east + shaken.east), abs=1e-15)
 

@@ -170,8 +170,8 @@ def _mean(water: Choice, plan: Plan, where: tuple[float, float, float, float]) -
     law, place = water.law, Where(*where, cast(SharedRows, plan.field))
     given = {"place": place, "noise": SILENCE, "dt": plan.tick, **{p.name: water.value(p.name) for p in law.parameters}}
     if law.memory_type is None:
-        return cast(Water, law.function(**given))
-    return cast(Water, law.function(**given, memory=law.memory_type())[0])
+        return cast(Water, law(**given))
+    return cast(Water, law(**given, memory=law.memory_type())[0])
 
 
 def spread_of(water: Choice) -> tuple[str, float]:
