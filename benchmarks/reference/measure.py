@@ -1,11 +1,13 @@
 """Time the reference workload: cardume beside other programs that do the same work, in one run."""
 
+import math
 import statistics
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from benchmarks.calibration import VEHICLE_STEPS
 from benchmarks.reference import native
+from benchmarks.reference.numpy_across import Missions
 from benchmarks.reference.workload import kernel_work, reference_plans
 from benchmarks.row import RATE, TIMES, Row
 from benchmarks.timing import Effort, Progress, Sample, Work, take_turns
@@ -15,11 +17,12 @@ from cardume.simulation.warming import warm_up
 
 SECONDS = 30.0
 MOST_MILLISECONDS = 8.0  # one mission alone
-AS_C = {"scalar": 4.0, "side by side": 1.3}  # times as fast, at least
+AS_C = {"C, scalar": 4.0, "C, side by side": 1.3}  # times as fast, at least
 THREADS = 2
 FEW, MANY = 16, 64  # missions
 ALONE, SCALAR, LANES = "cardume, one mission alone", "cardume, scalar", "cardume, lanes"
 C_ALONE, C_SCALAR, C_VECTOR = "C, one mission alone", "C, scalar", "C, side by side"
+NUMPY = "NumPy, 512 missions at once, their first 30 s"
 
 
 def measure(effort: Effort, progress: Progress) -> Iterator[Row]:
@@ -28,26 +31,30 @@ def measure(effort: Effort, progress: Progress) -> Iterator[Row]:
     warm_up(plans[0])
     if HAS_LANES:
         compile_lanes(plans[0], progress)
-    works = cardume_works(plans) | (c_works(plans, progress) if native.why_not() is None else {})
+    works = cardume_works(plans) | (c_works(plans, progress) if native.why_not() is None else {}) | numpy_work(effort)
     samples = take_turns({name: work for name, (work, _) in works.items()}, SECONDS, effort, progress)
-    steps = vehicle_steps(plans[0])
-    for name, (work, count) in works.items():
-        yield (_many if work.threads > 1 else _alone)(name, samples[name], count * steps)
-    yield from _ratios(samples, {name: count for name, (_, count) in works.items()})
+    for name, (_, steps) in works.items():
+        yield (_alone if name in (ALONE, C_ALONE) else _many)(name, samples[name], steps)
+    yield from _ratios(samples, {name: steps for name, (_, steps) in works.items()})
 
 
 def cardume_works(plans: Sequence[Plan]) -> dict[str, tuple[Work, int]]:
-    """The engine alone, and how many missions it flies.
+    """The engine alone, and how many vehicle-steps it makes.
 
     Args:
         plans: the missions.
     """
     few = plans[:FEW]
-    works = {ALONE: (kernel_work(plans[:1], 1, lanes=False), 1)}
-    works[SCALAR] = kernel_work(few, THREADS, lanes=False), len(few)
+    works = {ALONE: (kernel_work(plans[:1], 1, lanes=False), steps_of(plans[:1]))}
+    works[SCALAR] = kernel_work(few, THREADS, lanes=False), steps_of(few)
     if HAS_LANES:
-        works[LANES] = kernel_work(plans, THREADS, lanes=True), len(plans)
+        works[LANES] = kernel_work(plans, THREADS, lanes=True), steps_of(plans)
     return works
+
+
+def steps_of(plans: Sequence[Plan]) -> int:
+    """How many vehicle-steps all missions make together."""
+    return sum(map(vehicle_steps, plans))
 
 
 def c_works(plans: Sequence[Plan], progress: Progress) -> dict[str, tuple[Work, int]]:
@@ -64,9 +71,20 @@ def c_works(plans: Sequence[Plan], progress: Progress) -> dict[str, tuple[Work, 
         f"{C_VECTOR}, {bits} bits": (program, plans, THREADS) for bits, program in native.vector_programs().items()
     }
     return {
-        name: (Work(partial(_fly, native.Flying(program, some), threads), threads=threads), len(some))
+        name: (Work(partial(_fly, native.Flying(program, some), threads), threads=threads), steps_of(some))
         for name, (program, some, threads) in found.items()
     }
+
+
+def numpy_work(effort: Effort) -> dict[str, tuple[Work, int]]:
+    """The same in NumPy, for the first half minute: every tick takes it as long.
+
+    Args:
+        effort: how hard to try.
+    """
+    count, seconds = (2, effort.mission_seconds()) if effort.is_smoke else (512, 30.0)
+    plans = reference_plans(count, effort, [f"duration={seconds} s"])
+    return {NUMPY: (Work(Missions.fly, partial(Missions, plans)), steps_of(plans))}
 
 
 def _fly(flying: native.Flying, threads: int, _: None) -> None:
@@ -89,7 +107,7 @@ def _alone(name: str, sample: Sample, steps: int) -> Row:
 def _many(name: str, sample: Sample, steps: int) -> Row:
     return Row(
         workload="reference",
-        case=f"{name}, {sample.threads} threads",
+        case=f"{name}, {sample.threads} thread{'s' if sample.threads > 1 else ''}",
         value=steps / sample.best * 1e-6,
         unit=RATE,
         median=steps / sample.median * 1e-6,
@@ -98,17 +116,18 @@ def _many(name: str, sample: Sample, steps: int) -> Row:
     )
 
 
-def _ratios(samples: Mapping[str, Sample], counts: Mapping[str, int]) -> Iterator[Row]:
-    """How many times as fast cardume's lanes are as C."""
-    rivals = {"scalar": [C_SCALAR], "side by side": [name for name in samples if name.startswith(C_VECTOR)]}
-    for kind, names in rivals.items():
-        case = f"cardume's lanes beside C, {kind}"
-        reason = native.why_not() or ("" if HAS_LANES else "there are no lanes without compilation")
-        if reason:
-            yield Row(workload="reference", case=case, value=float("nan"), unit=TIMES, remark=f"not measured: {reason}")
+def _ratios(samples: Mapping[str, Sample], steps: Mapping[str, int]) -> Iterator[Row]:
+    """How many times as fast cardume's lanes are as the others."""
+    side_by_side = [name for name in samples if name.startswith(C_VECTOR)]
+    for kind, rivals in {"C, scalar": [C_SCALAR], "C, side by side": side_by_side, "NumPy": [NUMPY]}.items():
+        case = f"cardume's lanes beside {kind}"
+        no_c = native.why_not() if kind != "NumPy" else None
+        if reason := no_c or ("" if HAS_LANES else "there are no lanes without compilation"):
+            yield Row(workload="reference", case=case, value=math.nan, unit=TIMES, remark=f"not measured: {reason}")
             continue
-        best = min(names, key=lambda name: samples[name].cpu / counts[name])
-        yield as_fast(case, (samples[LANES], counts[LANES]), (samples[best], counts[best]), AS_C[kind])
+        best = min(rivals, key=lambda name: samples[name].cpu / steps[name])
+        theirs = samples[best], steps[best]
+        yield as_fast(case, (samples[LANES], steps[LANES]), theirs, AS_C.get(kind))
 
 
 def as_fast(case: str, ours: tuple[Sample, int], theirs: tuple[Sample, int], target: float | None) -> Row:
@@ -116,14 +135,16 @@ def as_fast(case: str, ours: tuple[Sample, int], theirs: tuple[Sample, int], tar
 
     Args:
         case: what is compared.
-        ours: times, and how many missions were flown in them.
+        ours: times, and how many vehicle-steps were made in them.
         theirs: the same of the other.
         target: [-] at least.
     """
-    (mine, my_count), (other, other_count) = ours, theirs
-    per = my_count / other_count
+    (mine, my_steps), (other, other_steps) = ours, theirs
+    per = my_steps / other_steps
     pairs = [per * b.cpu / a.cpu for a, b in zip(mine.taken, other.taken, strict=True)]
-    by_clock = statistics.median(per * b.wall / a.wall for a, b in zip(mine.taken, other.taken, strict=True))
+    clocks = [per * b.wall / a.wall for a, b in zip(mine.taken, other.taken, strict=True)]
+    threads = mine.threads / other.threads
+    by_clock = f"by the clock {statistics.median(clocks):.2f} x in the middle"
     return Row(
         workload="reference",
         case=case,
@@ -131,5 +152,5 @@ def as_fast(case: str, ours: tuple[Sample, int], theirs: tuple[Sample, int], tar
         unit=TIMES,
         target=target,
         median=statistics.median(pairs),
-        remark=f"by processor time; by the clock {by_clock:.2f} x in the middle",
+        remark=f"by processor time; {by_clock}{f', on {threads:.0f} times the threads' if threads > 1.0 else ''}",
     )

@@ -28,7 +28,6 @@ from cardume.paths.table import (
     rows_on_path,
 )
 from cardume.simulation.plan import Plan
-from cardume.simulation.recording import CHANNELS
 
 SOURCES = Path(__file__).with_name("c")
 COMPILER = "gcc"
@@ -43,6 +42,34 @@ VEHICLE_SUMS = (
     *("north", "east", "heading", "settled", "settling_time", "line_time", "line_squares", "arc_time", "arc_squares"),
     *("cross_track_max", "flown", "position_squares", "current_squares", "progress", "energy", "yaw_effort"),
     *("absolute_error", "time", "squares", "relative_squares", "sent", "delivered", "age_sum", "age_max"),
+)
+LOG = (
+    *(
+        "north",
+        "east",
+        "depth",
+        "heading",
+        "surge",
+        "sway",
+        "yaw_rate",
+        "course",
+        "speed",
+        "current_north",
+        "current_east",
+    ),
+    *(
+        "cross_track",
+        "along_track",
+        "path_course",
+        "curvature",
+        "coordination_state",
+        "shaft_speed",
+        "thrust",
+        "yaw_moment",
+    ),
+    *("altitude", "north_estimate", "east_estimate", "current_north_estimate", "current_east_estimate"),
+    *("cross_track_estimate", "coordination_state_estimate", "course_desired", "heading_desired", "speed_desired"),
+    *("speed_correction", "depth_desired", "phase"),
 )
 FLEET_SUMS = ("time", "coordination_squares", "coordination_max", "separation_squared", "failed_at")
 MISSION = np.dtype(
@@ -158,7 +185,7 @@ class Flying:
             "vehicles": (size, len(VEHICLE_SUMS)),
             "fleet": (len(FLEET_SUMS),),
             "histograms": (size, 2, HISTOGRAM_BINS),
-            "log": (records, size, len(CHANNELS)),
+            "log": (records, size, len(LOG)),
             "predictions": (records, size, size),
             "messages": (self._room, MESSAGE_COLUMNS),
         }

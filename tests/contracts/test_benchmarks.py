@@ -25,8 +25,10 @@ CASES = {
         "cardume, one mission alone",
         "cardume, scalar, 2 threads",
         *(["C, one mission alone", "C, scalar, 2 threads", "C, side by side"] if shutil.which("gcc") else []),
+        "NumPy",
         "beside C, scalar",
         "beside C, side by side",
+        "beside NumPy",
     ],
     "families": ["ideal sensors", "observer", "crab", "coordination", "noisy", "bernoulli", "medusa"],
 }
