@@ -85,7 +85,7 @@ def make_page(run: Run) -> str:
     script, plotly = _part("report.js"), library()
     word, kind = badge(run)
     return Template(_part("template.html")).substitute(
-        policy=_policy(plotly, script),
+        policy=page_policy(plotly, script),
         version=html.escape(run.version),
         title=html.escape(flight.mission_name),
         style=_part("report.css"),
@@ -119,7 +119,7 @@ def _part(name: str) -> str:
     return (resources.files("cardume.report.page") / name).read_text(encoding="utf-8")
 
 
-def _policy(*scripts: str) -> str:
+def page_policy(*scripts: str) -> str:
     """Nothing from a network, and no script but our own, whatever a name in the mission says."""
     digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts)
     allowed = " ".join(f"'sha256-{digest}'" for digest in digests)

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from cardume.report.study.blocks import chance_interval
 from cardume.report.study.common import as_results, listed, percent
 from cardume.report.study.influences import all_influences
-from cardume.report.study.table import chance_interval
 from cardume.simulation.flight import METRICS
 from cardume.studies.answers.differences import Differences, differences, swept_laws
 from cardume.studies.answers.influences import Influences

@@ -12,6 +12,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -19,12 +20,12 @@ import numpy as np
 from cardume.studies.answers.results import Results
 from cardume.studies.statistics import CONFIDENCE, shared_confidence, student_quantile
 
-GROUPS = 25  # of runs, of which one at a time is left out
+GROUPS = 20  # of runs, of which one at a time is left out
 FEWEST_RUNS = 20
-MOST_ROWS = 5000  # missions that are used
+MOST_ROWS = 3000  # missions that are used
 MOST_DEGREE = 8
 ROWS_PER_TERM = 4  # at least, of a fit
-MOST_TERMS = 150  # of a fit
+MOST_TERMS = 100  # of a fit
 MOST_LEVELS = 8  # of an input that takes few values, each then stands for itself
 
 
@@ -89,6 +90,7 @@ class Influences:
     num_missions: int
 
 
+@lru_cache(maxsize=16)
 def influences(results: Results, metric: str) -> Influences | None:
     """What each input does to a metric.
 
@@ -246,6 +248,8 @@ def _best_degree(inputs: Sequence[Input], y: np.ndarray) -> int:
         error = float(np.mean(((y - q @ (q.T @ y)) / (1.0 - leverage)) ** 2))
         if error < least * (1.0 - 1e-9):
             best, least = degree, error
+        elif degree > best + 1:
+            break  # what comes after fits noise
     return best
 
 
