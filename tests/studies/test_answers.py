@@ -8,7 +8,7 @@ from scipy import stats
 
 from cardume.errors import DataError
 from cardume.studies.answers.differences import differences, swept_laws
-from cardume.studies.answers.distributions import MOST_RESAMPLED, distribution, mean_of, quantile
+from cardume.studies.answers.distributions import MOST_RESAMPLED, distribution, mean_of, means_of, quantile
 from cardume.studies.answers.regions import (
     boundary,
     chance_curves,
@@ -65,6 +65,13 @@ def test_mean_of_many_runs_is_students_and_near_the_bootstraps() -> None:
     assert abs(found.low - slow.low) < 0.1 * half
     assert abs(found.high - slow.high) < 0.1 * half
     assert mean_of(sample[:200]) == estimate(sample[:200])
+
+
+def test_means_of_many_samples_are_those_of_each() -> None:
+    samples = rng(9).exponential(size=(5, 40))
+    samples[1, 3:9], samples[2] = np.nan, 7.0
+    for found, sample in zip(means_of(samples), samples, strict=True):
+        np.testing.assert_allclose(found, mean_of(sample), rtol=1e-12)
 
 
 def test_distribution_counts_what_is_missing() -> None:

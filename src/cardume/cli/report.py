@@ -1,4 +1,4 @@
-"""`cardume report`: the report and the figures of a run, again or in another shape."""
+"""`cardume report`: the report and the figures of a run or a study, again or in another shape."""
 
 import json
 import re
@@ -19,7 +19,7 @@ INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0}
 NARROWEST, WIDEST = 2.0, 40.0  # [inch]
 
 
-@click.command(short_help="Write the report of an earlier run, or figures of it.")
+@click.command(short_help="Write the report of an earlier run or study, or figures of it.")
 @click.argument("run", type=click.Path(path_type=Path))
 @click.option(
     "--figure", "figures", multiple=True, metavar="NAME", help="A figure instead of the page; may be repeated; or all."
@@ -46,12 +46,14 @@ def report(
     quiet: bool,
     as_json: bool,
 ) -> int:
-    """Write report.html of RUN, the directory of an earlier run; or figures of it, for a paper.
+    """Write report.html of RUN, the directory of an earlier run or study; or figures of it, for a paper.
 
     \b
       cardume report runs/figure-5/001
       cardume report runs/figure-5/001 --figure plan --format pdf --width 88mm
+      cardume report runs/figure-5-study/001 --figure map
     """
+    from cardume.cli.study_answers import is_study, report_study
     from cardume.missions.results import ResultsError, note_files
     from cardume.missions.runs import read_run
     from cardume.units import printable
@@ -59,15 +61,18 @@ def report(
     inches = parse_width(width) if width else None
     if not figures and (formats or width):
         raise InputError("--format and --width are about figures; add --figure NAME, or --figure all")
-    names = _chosen(figures)
-    found = read_run(run, allow_code)
-    directory = run.parent if run.name == "log.nc" else run
-    target = output or directory
+    directory = run.parent if run.name in ("log.nc", "study.zarr") else run
+    target, kinds = output or directory, formats or ("svg",)
+    of_study = is_study(directory)
+    names = list(figures) if of_study else _chosen(figures)
+    found = None if of_study else read_run(run, allow_code)
     try:
         target.mkdir(parents=True, exist_ok=True)
-        kinds = formats or ("svg",)
-        written = _write_figures(found, target, names, kinds, inches) if names else _write_page(found, target)
-        if output is None:
+        if found is None:
+            written = report_study(directory, target, names, kinds, inches, allow_code)
+        else:
+            written = _write_figures(found, target, names, kinds, inches) if names else _write_page(found, target)
+        if output is None and found is not None:
             note_files(directory, [path.relative_to(directory).as_posix() for path in written])
     except OSError as problem:
         raise ResultsError(

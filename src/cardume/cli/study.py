@@ -1,9 +1,7 @@
 """`cardume study`: one mission with values that are drawn or swept, flown as often as it takes."""
 
 import shlex
-import shutil
 import sys
-import textwrap
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -20,16 +18,17 @@ from cardume.cli.options import (
 )
 from cardume.cli.progress import Progress, time_words
 from cardume.cli.stopping import Stopping
+from cardume.cli.study_answers import filled
 
 if TYPE_CHECKING:
     import xarray
 
+    from cardume.studies.answers.results import Results
     from cardume.studies.forecast import Forecast
 
 DONE, FAILED, BUG = 0, 3, 4
 RUNS = Path("runs")
 SAMPLINGS = ("monte_carlo", "latin_hypercube", "sobol")
-WIDEST_TEXT = 100  # characters
 
 
 class Request(NamedTuple):
@@ -185,7 +184,7 @@ def _end(request: Request, directory: Path, runs: "xarray.Dataset", stopping: St
             err=True,
         )
         return stopping.exit_code or DONE
-    return _report(request, directory, runs, failed)
+    return _report(request, directory, runs, failed, stopping)
 
 
 def _same(request: Request) -> list[str]:
@@ -200,80 +199,67 @@ def _same(request: Request) -> list[str]:
     return words
 
 
-def _report(request: Request, directory: Path, runs: "xarray.Dataset", failed: int) -> int:
+def _report(request: Request, directory: Path, runs: "xarray.Dataset", failed: int, stopping: Stopping) -> int:
+    from cardume.cli.study_answers import Drawn, draw_answers
+    from cardume.report.study.words import study_words
+    from cardume.studies.answers.results import Results
     from cardume.studies.summing_up import summarize_study, write_summary
 
-    summary, problem = summarize_study(runs), None
+    results, drawn = Results(runs), Drawn(())
+    summary = summarize_study(runs) | {"conclusions": study_words(results)}
     write_summary(directory, summary)
-    if not request.no_figures:
-        problem = _draw(directory, runs)
+    if request.is_talkative:
+        _say_numbers(request, results)
+    if not (request.no_figures or stopping.is_asked()):
+        drawn = draw_answers(directory, results, request.allow_code, stopping.is_asked)
     if request.as_json:
         import json
 
         click.echo(json.dumps(summary, indent=2, allow_nan=False))
     elif not request.quiet:
-        _say_numbers(request, runs)
         files = sorted(path.name + "/" * path.is_dir() for path in directory.iterdir() if path.name[0] != ".")
-        click.echo(f"\nWritten to {directory}\n{_filled(', '.join(files), indent='  ')}")
-        _say_next(request, directory, runs)
+        click.echo(f"\nWritten to {directory}\n{filled(', '.join(files), indent='  ')}")
+        _say_next(request, directory, results)
+        if drawn.lacking:
+            click.echo(f"\nnote: {drawn.lacking}", err=True)
     if failed:
         click.echo(
             f"{failed:,} of {runs['status'].size:,} missions failed; `failure` in the data set says why", err=True
         )
     if failed == runs["status"].size:
         return FAILED
-    return _own_up(problem) if problem is not None else DONE
-
-
-def _draw(directory: Path, runs: "xarray.Dataset") -> Exception | None:
-    """Draw the figures; a study is not lost for one that cannot be drawn."""
-    from cardume.report.study.figures import save_study_figures
-
-    try:
-        save_study_figures(runs, directory / "figures")
-    except OSError:
-        raise
-    except Exception as problem:
-        return problem
-    return None
+    return _own_up(drawn.problem) if drawn.problem is not None else DONE
 
 
 def _own_up(problem: Exception) -> int:
     from cardume.cli.bugs import save_traceback
 
     where = save_traceback(problem)
-    click.echo(f"error: the figures could not be drawn, a bug in cardume; the details are in {where}", err=True)
+    click.echo(f"error: figures or report could not be drawn, a bug in cardume; the details are in {where}", err=True)
     return BUG
 
 
-def _say_numbers(request: Request, runs: "xarray.Dataset") -> None:
-    from cardume.report.study.table import study_table
-    from cardume.report.study.words import study_words
+def _say_numbers(request: Request, results: "Results") -> None:
+    from cardume.cli.study_answers import say_answers
 
-    count, sampling = runs.sizes["run"], str(runs.attrs["sampling"]).replace("_", " ")
-    cases = runs["status"].size // count
-    what = f"{cases} cases, {count:,} runs each" if cases > 1 else f"{count:,} runs"
+    count, sampling = len(results.seeds), str(results.dataset.attrs["sampling"]).replace("_", " ")
+    what = f"{results.num_cases} cases, {count:,} runs each" if results.num_cases > 1 else f"{count:,} runs"
     how = "" if sampling == "monte carlo" else f", by {sampling}"
     click.echo(f"\n{click.style(request.mission, bold=True)}, {what}{how}\n")
-    click.echo(study_table(runs, shutil.get_terminal_size().columns))
-    click.echo()
-    for sentence in study_words(runs):
-        click.echo(_filled(sentence))
+    say_answers(results)
 
 
-def _say_next(request: Request, directory: Path, runs: "xarray.Dataset") -> None:
+def _say_next(request: Request, directory: Path, results: "Results") -> None:
+    from cardume.report.study.figures import figures_that_matter
+
     python = f"import cardume; print(cardume.open_study({str(directory)!r}))"
-    more = ["cardume", "study", request.mission, "--runs", str(4 * runs.sizes["run"]), *_same(request)]
+    more = ["cardume", "study", request.mission, "--runs", str(4 * len(results.seeds)), *_same(request)]
+    figure = next(iter(figures_that_matter(results)), "worst")
+    paper = ["cardume", "report", str(directory), "--figure", figure, "--format", "pdf", "--width", "88mm"]
     click.echo(f"\nNext\n  {shlex.join(more)}\n      half the width of every interval")
+    click.echo(f"  {shlex.join(paper)}\n      a figure for a paper")
     click.echo(f"  python -c {_quoted(python)}\n      every number of every run, in xarray")
 
 
 def _quoted(text: str) -> str:
-    return f'"{text}"' if not set(text) & set('"$`\\\\!') else shlex.quote(text)
-
-
-def _filled(text: str, indent: str = "") -> str:
-    room = max(40, min(shutil.get_terminal_size().columns, WIDEST_TEXT))
-    return textwrap.fill(
-        text, room, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
+    return f'"{text}"' if not set(text) & set('"$`\\!') else shlex.quote(text)

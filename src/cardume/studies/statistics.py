@@ -128,6 +128,17 @@ def resampled_means(sample: np.ndarray) -> np.ndarray:
     return np.concatenate([sample[_drawn(generator, count, sample.size)].mean(axis=1) for count in counts])
 
 
+@lru_cache(maxsize=2)
+def resampled_counts(size: int) -> np.ndarray:
+    """How often each value is in each of the samples of `resampled_means` (RESAMPLES, size) [-].
+
+    Args:
+        size: of the sample.
+    """
+    rows = _places(size) + size * np.arange(RESAMPLES)[:, None]
+    return np.bincount(rows.ravel(), minlength=RESAMPLES * size).reshape(RESAMPLES, size).astype(float)
+
+
 @lru_cache(maxsize=4)
 def _places(size: int) -> np.ndarray:
     return _drawn(np.random.Philox(KEY), RESAMPLES, size)

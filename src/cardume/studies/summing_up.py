@@ -9,7 +9,8 @@ import numpy as np
 
 from cardume.missions.atomic import write_file
 from cardume.missions.summary import to_json
-from cardume.studies.statistics import estimate, share_interval
+from cardume.studies.answers.distributions import means_of
+from cardume.studies.statistics import Estimate, share_interval
 
 if TYPE_CHECKING:
     import xarray
@@ -27,6 +28,11 @@ def summarize_study(runs: "xarray.Dataset") -> dict[str, Any]:
     """
     swept = [str(key) for key in runs["status"].dims if key != "run"]
     places = itertools.product(*(range(runs.sizes[key]) for key in swept))
+    means = {
+        str(name): means_of(found.transpose(*swept, "run").to_numpy().reshape(-1, runs.sizes["run"]))
+        for name, found in runs.data_vars.items()
+        if str(name).startswith(FLEET)
+    }
     about = {
         key: runs.attrs[key] for key in ("version", "title", "sampling", "seed", "runs", "command", "mission_hash")
     }
@@ -34,7 +40,10 @@ def summarize_study(runs: "xarray.Dataset") -> dict[str, Any]:
         "cardume_study": FORMAT_VERSION,
         **about,
         "swept": swept,
-        "cases": [_case(runs.isel(dict(zip(swept, place, strict=True))), swept) for place in places],
+        "cases": [
+            _case(runs.isel(dict(zip(swept, place, strict=True))), swept, {name: of[k] for name, of in means.items()})
+            for k, place in enumerate(places)
+        ],
     }
 
 
@@ -48,12 +57,10 @@ def write_summary(directory: Path, summary: dict[str, Any]) -> None:
     write_file(directory / FILE_NAME, to_json(summary).encode())
 
 
-def _case(runs: "xarray.Dataset", swept: list[str]) -> dict[str, Any]:
+def _case(runs: "xarray.Dataset", swept: list[str], means: dict[str, Estimate]) -> dict[str, Any]:
     status = runs["status"].to_numpy()
     values = {key: runs[key].item() for key in swept}
-    metrics = {
-        str(name): _metric(found.to_numpy()) for name, found in runs.data_vars.items() if str(name).startswith(FLEET)
-    }
+    metrics = {name: _metric(mean) for name, mean in means.items()}
     return {
         "label": ", ".join(
             f"{key} {value:.6g}" if isinstance(value, float) else f"{key} {value}" for key, value in values.items()
@@ -74,6 +81,5 @@ def _share(met: np.ndarray) -> dict[str, Any]:
     return {"share": float(met.mean()) if met.size else None, "interval": [low, high], "runs": int(met.size)}
 
 
-def _metric(values: np.ndarray) -> dict[str, Any]:
-    found = estimate(values)._asdict()
-    return {key: value if math.isfinite(value) else None for key, value in found.items()}
+def _metric(mean: Estimate) -> dict[str, Any]:
+    return {key: value if math.isfinite(value) else None for key, value in mean._asdict().items()}

@@ -11,7 +11,7 @@ from cardume.simulation.flight import Flight
 from cardume.studies.answers.worst import WorstRun
 
 PLAN, ERROR = 2.0, 1.2  # [inch]
-CAPTION = 30  # characters of a line
+CAPTION = 27  # characters of a line
 
 
 def draw_worst(flights: Sequence[tuple[WorstRun, Flight]], width: float = style.WIDTH) -> Any:
@@ -59,8 +59,8 @@ def _draw_plan(axes: Any, run: WorstRun, flight: Flight) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.locator_params(nbins=4)
     axes.tick_params(labelsize=6.0)
-    dress(axes, caption(run), "", "")
-    axes.title.set_fontsize(6.5)
+    dress(axes)
+    axes.set_title(caption(run), fontsize=6.0, loc="left", pad=4.0)
 
 
 def _draw_error(axes: Any, flight: Flight, is_first: bool) -> None:

@@ -7,9 +7,19 @@ from typing import NamedTuple
 import numpy as np
 
 from cardume.studies.answers.results import Results
-from cardume.studies.statistics import CONFIDENCE, Estimate, estimate, student_quantile
+from cardume.studies.statistics import (
+    CONFIDENCE,
+    ROUNDING,
+    Estimate,
+    estimate,
+    expanded_tail,
+    resampled_counts,
+    student_quantile,
+)
 
 SHARES = (0.05, 0.25, 0.5, 0.75, 0.95)
+TOGETHER = 200  # samples at once
+TOGETHER_FROM = 400  # runs of a sample, up to which the resampling of many fits into memory
 MOST_RESAMPLED = 1000  # runs; of more, the bootstrap says what Student's interval says
 
 
@@ -84,6 +94,40 @@ def mean_of(values: np.ndarray, confidence: float = CONFIDENCE) -> Estimate:
     mean, count = float(known.mean()), known.size
     half = student_quantile(0.5 + 0.5 * confidence, count - 1) * float(known.std(ddof=1)) / math.sqrt(count)
     return Estimate(mean, mean - half, mean + half, count)
+
+
+def means_of(samples: np.ndarray, confidence: float = CONFIDENCE) -> list[Estimate]:
+    """What `mean_of` says of each of many samples, but for rounding; much faster.
+
+    Args:
+        samples: (k, n) [any] those that are no number are left out.
+        confidence: [-] of the intervals.
+    """
+    found = [mean_of(row, confidence) if _is_special(row) else None for row in samples]
+    plain = [k for k, one in enumerate(found) if one is None]
+    size = samples.shape[1]
+    for start in range(0, len(plain), TOGETHER):
+        some = samples[plain[start : start + TOGETHER]]
+        tail = expanded_tail(size, confidence)
+        low, high = np.quantile(resampled_counts(size) @ some.T / size, (tail, 1.0 - tail), axis=0)
+        mean, wide = some.mean(axis=1), student_quantile(0.5 + 0.5 * confidence, size - 1)
+        half = wide * some.std(axis=1, ddof=1) / math.sqrt(size)
+        ends = zip(
+            plain[start : start + TOGETHER],
+            mean,
+            np.minimum(low, mean - half),
+            np.maximum(high, mean + half),
+            strict=True,
+        )
+        for place, middle, below, above in ends:
+            found[place] = Estimate(float(middle), float(below), float(above), size)
+    return [one for one in found if one is not None]
+
+
+def _is_special(values: np.ndarray) -> bool:
+    """Whether a sample is none that can be treated with all others at once."""
+    is_whole = 1 < values.size <= TOGETHER_FROM and bool(np.isfinite(values).all())
+    return not is_whole or float(np.ptp(values)) <= ROUNDING * abs(float(values.mean()))
 
 
 def quantile(ordered: np.ndarray, share: float, confidence: float = CONFIDENCE) -> Quantile:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cardume.studies.answers.distributions import mean_of
+from cardume.studies.answers.distributions import means_of
 from cardume.studies.answers.requirements import chances_of_all
 from cardume.studies.answers.results import Results
 from cardume.studies.statistics import Estimate
@@ -101,7 +101,7 @@ def curves(results: Results, key: str, metric: str) -> tuple[Curve, ...]:
         rows = values[index][order]
         known = [row[np.isfinite(row)] for row in rows]
         ends = np.array([np.quantile(row, (0.05, 0.95)) if row.size else (math.nan, math.nan) for row in known])
-        found.append(Curve(label, numbers[order], tuple(mean_of(row) for row in known), ends[:, 0], ends[:, 1]))
+        found.append(Curve(label, numbers[order], tuple(means_of(rows)), ends[:, 0], ends[:, 1]))
     return tuple(found)
 
 

@@ -58,8 +58,8 @@ SECTIONS = (
     (
         "influences",
         "What matters",
-        "Shares of the variance (Sobol), by polynomials fitted to the runs, with the intervals of a jackknife over groups"
-        " of runs. Alone: by itself; with others: with all its combinations. The rest is noise by the seed, or finer.",
+        "Shares of the variance (Sobol), by polynomials fitted to the runs, with the intervals of a jackknife over"
+        " groups of runs. Alone: by itself; with others: in all combinations. The rest is noise by the seed, or finer.",
         influence_charts,
     ),
 )

@@ -8,13 +8,16 @@
     if (isFinger) layout.dragmode = false; // a finger that moves over a chart scrolls the page
     return Plotly.newPlot(document.getElementById(id), data, layout, options);
   });
-  const fit = (scale) => {
+  // On paper a chart has the size that the style gives its column there: two or, of flights, three on a page of A4.
+  const onPaper = (id) => (id.startsWith("worst") ? [215, 300] : [330, id.startsWith("map") ? 270 : 220]);
+  addEventListener("beforeprint", () => {
     for (const id of Object.keys(report.charts)) {
-      const node = document.getElementById(id);
-      Plotly.relayout(node, scale ? { width: node.clientWidth, height: node.clientHeight } : { autosize: true, width: null, height: null });
+      const [width, height] = onPaper(id);
+      Plotly.relayout(document.getElementById(id), { width, height });
     }
-  };
-  addEventListener("beforeprint", () => fit(true));
-  addEventListener("afterprint", () => fit(false));
+  });
+  addEventListener("afterprint", () => {
+    for (const id of Object.keys(report.charts)) Plotly.relayout(document.getElementById(id), { width: null, height: null, autosize: true });
+  });
   Promise.all(drawn).then(() => { document.body.dataset.ready = "yes"; });
 })();

@@ -1,0 +1,109 @@
+"""What is written beside a study: its figures and its page."""
+
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from cardume.errors import CardumeError
+from cardume.report.page.page import LibraryMissing
+from cardume.report.study.common import as_results
+from cardume.report.study.figures import STUDY_FIGURES, WORST, save_study_figure, save_study_figures
+from cardume.report.study.page.page import FILE_NAME, Worst, write_study_page
+from cardume.report.study.worst_flights import draw_worst
+from cardume.studies.answers.again import fly_again
+from cardume.studies.answers.results import Results
+from cardume.studies.answers.worst import NUMBER, worst_runs
+
+FIGURES = "figures"
+
+
+def fly_worst(
+    results: Results,
+    number: int = NUMBER,
+    allow_code: Iterable[str | Path] = (),
+    should_stop: Callable[[], bool] = lambda: False,
+) -> Worst:
+    """The worst runs of a study, flown again; none where the study cannot.
+
+    Args:
+        results: of the study.
+        number: how many at most.
+        allow_code: folders from which the mission's own laws may be imported.
+        should_stop: asked before each.
+    """
+    found, folders = [], tuple(allow_code)
+    for run in worst_runs(results, number):
+        if should_stop():
+            break
+        try:
+            found.append((run, fly_again(results, run.case, run.run, folders)))
+        except CardumeError:  # a law or a file of the mission is not here: the rest of the report does without
+            return ()
+    return tuple(found)
+
+
+def write_study_report(
+    directory: Path,
+    study: Any,
+    allow_code: Iterable[str | Path] = (),
+    should_stop: Callable[[], bool] = lambda: False,
+) -> tuple[list[str], str]:
+    """Figures and page of a study, into its directory.
+
+    Args:
+        directory: of the study.
+        study: `Results`, or its dataset.
+        allow_code: folders from which the mission's own laws may be imported.
+        should_stop: asked between the pieces; what is written by then is complete.
+
+    Returns:
+        The names of the files, and why there is no page, or "".
+    """
+    results = as_results(study)
+    written = [f"{FIGURES}/{name}" for name in save_study_figures(results, directory / FIGURES)]
+    worst = fly_worst(results, allow_code=allow_code, should_stop=should_stop)
+    if worst and not should_stop():
+        for kind in ("svg", "png"):
+            save_study_figure(directory / FIGURES / f"{WORST}.{kind}", draw_worst(worst))
+            written.append(f"{FIGURES}/{WORST}.{kind}")
+    if should_stop():
+        return written, ""
+    try:
+        write_study_page(directory / FILE_NAME, results, worst)
+    except LibraryMissing as problem:
+        return written, str(problem)
+    return [*written, FILE_NAME], ""
+
+
+def write_figures(
+    target: Path,
+    study: Any,
+    names: Sequence[str],
+    formats: Sequence[str],
+    width: float,
+    allow_code: Iterable[str | Path] = (),
+) -> list[Path]:
+    """Figures of a study for a paper.
+
+    Args:
+        target: folder that is made.
+        study: `Results`, or its dataset.
+        names: of STUDY_FIGURES, or WORST.
+        formats: svg, pdf or png.
+        width: [inch] of each figure.
+        allow_code: folders from which the mission's own laws may be imported.
+
+    Returns:
+        The files.
+    """
+    results, written = as_results(study), []
+    target.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        if name == WORST:
+            figure = draw_worst(fly_worst(results, allow_code=allow_code), width)
+        else:
+            figure = STUDY_FIGURES[name].draw(results, width)
+        for kind in dict.fromkeys(formats):
+            written.append(target / f"{name}.{kind}")
+            save_study_figure(written[-1], figure)
+    return written
