@@ -262,4 +262,4 @@ def _say_next(request: Request, directory: Path, results: "Results") -> None:
 
 
 def _quoted(text: str) -> str:
-    return f'"{text}"' if not set(text) & set('"$`\\!') else shlex.quote(text)
+    return f'"{text}"' if not set(text) & set('"$`\\\\!') else shlex.quote(text)
