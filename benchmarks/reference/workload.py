@@ -17,7 +17,8 @@ from cardume.missions.planning import make_plan
 from cardume.simulation.engine import advance
 from cardume.simulation.fleet import Tables
 from cardume.simulation.plan import Plan
-from cardume.simulation.tables import join, make_tables
+from cardume.simulation.side_by_side import join
+from cardume.simulation.tables import make_tables
 
 FILE = Path(__file__).with_name("mission.yaml")
 FIRST_SEED = 1

@@ -11,10 +11,9 @@ import pytest
 from cardume.report.comparison_figure import save_comparison
 from cardume.report.comparison_table import comparison_table, decimals_for, shortened
 from cardume.report.comparison_words import conclusions
-from cardume.simulation.flight import Metrics
 from cardume.studies.arms import Arm
 from cardume.studies.comparing import Comparison
-from cardume.studies.flying import Run
+from cardume.studies.run_table import RunTable
 from cardume.studies.statistics import Estimate
 
 
@@ -24,14 +23,20 @@ def make_comparison(labels: list[str], columns: dict[str, np.ndarray], **changes
     arms = tuple(Arm(label, mission, "mission.yaml", (f"key={label}",)) for label in labels)
     count = next(iter(columns.values())).shape[1]
     runs = tuple(
-        tuple(
-            Run(Metrics(fleet={}, vehicles={"a": {name: float(of[k, seed]) for name, of in columns.items()}}))
-            for seed in range(count)
-        )
+        make_runs(count, {f"fleet_{name}": of[k].astype(float) for name, of in columns.items()})
         for k in range(len(labels))
     )
     made = Comparison(arms, ("key",), tuple(range(1, count + 1)), count, tuple(columns), runs)
     return replace(made, **changes)
+
+
+def make_runs(count: int, metrics: dict[str, np.ndarray]) -> RunTable:
+    """Runs in which nothing is required and nothing failed."""
+    none = np.zeros((count, 0))
+    well = ("",) * count
+    return RunTable(
+        np.arange(1, count + 1), {}, metrics, (), none, none.astype(bool), np.full(count, np.nan), well, none
+    )
 
 
 def noise(seed: int, mean: float, deviation: float, count: int = 20) -> np.ndarray:
@@ -96,10 +101,11 @@ def test_what_only_one_interval_says_is_no_more_than_a_maybe() -> None:
 
 
 def test_failures_interruptions_and_requirements_are_told(three: Comparison) -> None:
-    runs = [list(of_arm) for of_arm in three.runs]
-    runs[1][4] = Run(Metrics(), met=False, failure="the state of vehicle a was no number at 3 s")
-    runs[0] = [replace(run, met=True) for run in runs[0]]
-    made = replace(three, asked=50, runs=tuple(tuple(of_arm) for of_arm in runs))
+    runs = list(three.runs)
+    failure = ("",) * 4 + ("the state of vehicle a was no number at 3 s",) + ("",) * 15
+    runs[1] = replace(runs[1], failure=failure)
+    runs[0] = replace(runs[0], requirements=("a <= 1 m",), met=np.ones((20, 1), bool))
+    made = replace(three, asked=50, runs=tuple(runs))
     said = [sentence for sentence in conclusions(made) if "settle" not in sentence or "seeds show" in sentence]
     assert said[0] == "Interrupted: all arms were flown with 20 of 50 seeds."
     assert said[-1] == "second failed in 1 of 20 missions; with seed 5 the state of vehicle a was no number at 3 s."

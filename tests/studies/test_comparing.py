@@ -70,23 +70,27 @@ def test_draws_are_common_too() -> None:
 
 
 def test_lanes_and_scalars_give_the_same_bits(noisy: Comparison, monkeypatch: pytest.MonkeyPatch) -> None:
-    used = []
-    real = flying.fly_batch
+    used: list[int] = []
+    real = flying.fly_joined
 
-    def spy(plans, threads, lanes=False, should_stop=lambda: False):  # type: ignore[no-untyped-def]
-        used.append(lanes)
-        return real(plans, threads, lanes=lanes, should_stop=should_stop)
+    def spy(plans, *rest):  # type: ignore[no-untyped-def]
+        used.append(len(plans))
+        return real(plans, *rest)
 
     monkeypatch.setattr(flying, "LANES_FROM", 0)
-    monkeypatch.setattr(flying, "fly_batch", spy)
+    monkeypatch.setattr(flying, "fly_joined", spy)
     laned = cardume.compare(read(NOISY), LAWS, runs=6)
-    assert used == [True, True]
+    assert used == [6, 6]
     for metric in noisy.metrics:
         assert (laned.values(metric) == noisy.values(metric)).all()
-    # a duration that is drawn keeps missions from sharing lanes; they fly all the same
-    drawn = cardume.compare(read(NOISY, "duration={choose: [20 s, 30 s]}"), LAWS, runs=6)
-    assert len(set(drawn.values("energy").ravel() if "energy" in drawn.metrics else drawn.seeds)) > 1
-    assert used[2:] == [True, False, True, False]
+    # missions of different length share lanes too, each to its own end
+    ragged = "duration={choose: [20 s, 30 s]}"
+    drawn = cardume.compare(read(NOISY, ragged), LAWS, runs=6)
+    assert used[2:] == [6, 6]
+    monkeypatch.setattr(flying, "LANES_FROM", 10**12)
+    alone = cardume.compare(read(NOISY, ragged), LAWS, runs=6, metrics=drawn.metrics)
+    for metric in drawn.metrics:
+        assert np.array_equal(drawn.values(metric), alone.values(metric), equal_nan=True)
 
 
 def test_requirements_and_what_never_settled_are_counted() -> None:

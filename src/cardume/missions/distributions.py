@@ -55,23 +55,31 @@ def rebuild(value: Any, visit: Callable[[str, Any], Any], key: str = "") -> Any:
     if isinstance(value, LawChoice):
         items = {name: visit(join(key, name), item) for name, item in value.parameters.items()}
         return replace(value, parameters=Table(items))
+    changes = {name: rebuild(part, visit, part_key) for name, part, part_key in parts_of(value, key)}
     if isinstance(value, tuple):
-        return tuple(rebuild(item, visit, join(key, _item_key(item, index))) for index, item in enumerate(value))
-    fields = fields_of(type(value)) if is_dataclass(value) else ()
-    changes = {field.key: rebuild(getattr(value, field.key), visit, _field_key(key, field)) for field in fields}
+        return tuple(changes.values())
     return replace(value, **changes) if changes else value
 
 
-def values_of(record: Any) -> Iterator[tuple[str, Any]]:
+def values_of(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
     """Every value in a record, records included, with its dotted key."""
-    found: list[tuple[str, Any]] = []
+    yield key, value
+    if isinstance(value, LawChoice):
+        for name, item in value.parameters.items():
+            yield join(key, name), item
+        return
+    for _, inner, inner_key in parts_of(value, key):
+        yield from values_of(inner, inner_key)
 
-    def keep(key: str, value: Any) -> Any:
-        found.append((key, value))
-        return value
 
-    rebuild(record, keep)
-    return iter(found)
+def parts_of(value: Any, key: str = "") -> list[tuple[Any, Any, str]]:
+    """What a record or a tuple of them is made of: the name or place of each part, the part, and its dotted key."""
+    if isinstance(value, tuple):
+        return [(index, item, join(key, _item_key(item, index))) for index, item in enumerate(value)]
+    return [
+        (field.key, getattr(value, field.key), _field_key(key, field))
+        for field in (fields_of(type(value)) if is_dataclass(value) else ())
+    ]
 
 
 def varying_values(record: Any) -> list[tuple[str, Varying]]:

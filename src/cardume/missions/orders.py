@@ -10,6 +10,7 @@ from cardume.missions.schema import Profile
 from cardume.missions.vehicle import PolygonFence, RoundFence, Vehicle
 from cardume.onboard.mind import NEVER, Orders
 from cardume.paths import table
+from cardume.simulation.memo import NO_MEMO, Memo
 from cardume.simulation.plan import OrderBook
 from cardume.simulation.safety import Safety
 
@@ -17,13 +18,14 @@ WATCHED = ("depth_max", "altitude_min", "geofence_margin_min", "separation_min")
 Over = Literal["time", "path"]
 
 
-def order_book(mission: Mission, vehicle: Vehicle, path: np.ndarray) -> OrderBook:
+def order_book(mission: Mission, vehicle: Vehicle, path: np.ndarray, memo: Memo = NO_MEMO) -> OrderBook:
     """What a vehicle is told beside its `Setup`.
 
     Args:
         mission: with every value fixed.
         vehicle: of its fleet.
         path: (n,) its path table.
+        memo: of other missions that were drawn from the same one.
 
     Raises:
         MissionError: what does not go together.
@@ -31,11 +33,12 @@ def order_book(mission: Mission, vehicle: Vehicle, path: np.ndarray) -> OrderBoo
     _check(mission, vehicle)
     speed, depth = mission.formation.speed, vehicle.depth
     fence = vehicle.limits.geofence if vehicle.limits else None
+    varies = memo.recall("varies along", (path,), lambda: varies_along(path))
     return OrderBook(
         _orders(vehicle),
         pace=speed.points if isinstance(speed, Profile) else (),
         pace_over=cast(Over, speed.over) if isinstance(speed, Profile) else "time",
-        varies_along=speed.over == "path" if isinstance(speed, Profile) else varies_along(path),
+        varies_along=speed.over == "path" if isinstance(speed, Profile) else varies,
         depth=depth.points if isinstance(depth, Profile) else (),
         depth_over=cast(Over, depth.over) if isinstance(depth, Profile) else "time",
         keeps_altitude=vehicle.altitude is not None,

@@ -4,6 +4,7 @@ import inspect
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +39,7 @@ from cardume.paths.projection import point_at
 from cardume.paths.segment import GeometryError, ReferencePath, length_of
 from cardume.paths.table import PathPlace, start_at
 from cardume.signals import Command, Reference, VesselState, Water
+from cardume.simulation.memo import NO_MEMO, Memo
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
 from cardume.simulation.score import Rules
 from cardume.world.currents import ProfilePoint, pack_profile
@@ -64,29 +66,41 @@ class Planned:
     reference: np.ndarray
 
 
-def make_plan(mission: Mission, catalog: Catalog) -> Planned:
+def make_plan(mission: Mission, catalog: Catalog, memo: Memo = NO_MEMO) -> Planned:
     """Build paths, look up laws and read the current of a mission whose numbers are all drawn.
 
     Args:
         mission: with every value fixed.
         catalog: where its laws are found.
+        memo: of other missions that were drawn from the same one.
 
     Raises:
         InputError: a path that cannot be built, an offset that does not fit, a current that does not cover it.
     """
-    origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
-    reference, origin = reference_path(mission, origin)
-    speed = table_speed(mission, length_of(reference))
-    own = _positioned(mission, "path", lambda: offset_path(reference, 0.0, 0.0, speed))
-    if not np.isfinite(own).all():
-        raise mission.error("formation.speed", "is not given, and not every piece of the path has a speed; give it")
-    paths = [_own_path(mission, vehicle, reference, speed) for vehicle in mission.vehicles]
-    water, field = _current(mission, origin, paths, catalog)
-    vehicles = tuple(_vehicle(mission, v, p, water, catalog) for v, p in zip(mission.vehicles, paths, strict=True))
-    seabed = read_seabed(mission, origin, [outline(path, 20.0)[:, 1:] for path in paths])
+    reference, origin = memo.recall("reference", (mission.path, mission.origin), lambda: _reference(mission))
+    length = memo.recall("length", (reference,), lambda: length_of(reference))
+    speed = table_speed(mission, length)
+    own = memo.recall("own path", (reference,), lambda: _formation_path(mission, reference, speed), speed)
+
+    def own_path(vehicle: Vehicle) -> np.ndarray:
+        parts = reference, vehicle.offset
+        return memo.recall("path", parts, lambda: _own_path(mission, vehicle, reference, speed), speed)
+
+    paths = [own_path(vehicle) for vehicle in mission.vehicles]
+    water, field = _current(mission, origin, paths, catalog, memo)
+    fleet = mission.bathymetry, mission.formation, mission.vehicles[0].coordination
+
+    def planned(vehicle: Vehicle, path: np.ndarray) -> VehiclePlan:
+        parts = vehicle, path, water, *fleet
+        make = partial(_vehicle, mission, vehicle, path, water, catalog, memo)
+        return memo.recall("vehicle", parts, make, mission.tick)
+
+    seabed = memo.recall(
+        "seabed", (mission.bathymetry, mission.origin, *paths), lambda: _seabed(mission, origin, paths)
+    )
     plan = Plan(
-        vehicles,
-        np.asarray(mission.adjacency),
+        tuple(planned(vehicle, path) for vehicle, path in zip(mission.vehicles, paths, strict=True)),
+        memo.recall("hears", (mission.vehicles[0].coordination,), lambda: np.asarray(mission.adjacency)),
         mission.duration,
         mission.seed,
         mission.tick,
@@ -99,6 +113,19 @@ def make_plan(mission: Mission, catalog: Catalog) -> Planned:
         is_watched(mission),
     )
     return Planned(plan, own)
+
+
+def _reference(mission: Mission) -> tuple[ReferencePath, GeoPoint | None]:
+    origin = GeoPoint(mission.origin.latitude, mission.origin.longitude) if mission.origin else None
+    return reference_path(mission, origin)
+
+
+def _formation_path(mission: Mission, reference: ReferencePath, speed: float) -> np.ndarray:
+    """The path of the formation's own point."""
+    own: np.ndarray = _positioned(mission, "path", lambda: offset_path(reference, 0.0, 0.0, speed))
+    if not np.isfinite(own).all():
+        raise mission.error("formation.speed", "is not given, and not every piece of the path has a speed; give it")
+    return own
 
 
 def _positioned(mission: Mission, key: str, build: Callable[[], Any]) -> Any:
@@ -133,23 +160,35 @@ def _own_path(mission: Mission, vehicle: Vehicle, reference: ReferencePath, spee
 
 
 def _current(
-    mission: Mission, origin: GeoPoint | None, paths: list[np.ndarray], catalog: Catalog
+    mission: Mission, origin: GeoPoint | None, paths: list[np.ndarray], catalog: Catalog, memo: Memo
 ) -> tuple[Choice, np.ndarray]:
     """The law of the water and, for a gridded one, its table."""
     chosen = mission.current
     if chosen.name == "none":
-        return Choice(laws_of("current")["uniform"], {"speed": 0.0}), np.zeros(1)
+        return memo.recall("still", (), lambda: (Choice(laws_of("current")["uniform"], {"speed": 0.0}), np.zeros(1)))
     if chosen.name == "sheared":
-        numbers = {key: value for key, value in chosen.parameters.items() if key != PROFILE}
-        return Choice(laws_of("current")["sheared"], numbers), _profile(chosen.parameters[PROFILE])
+        return memo.recall("sheared", (chosen,), lambda: _sheared(chosen))
     if chosen.name != "gridded":
-        return _choice(chosen, catalog), np.zeros(1)
+        law = memo.recall("law", (chosen,), lambda: _choice(chosen, catalog))
+        return law, memo.recall("no field", (), lambda: np.zeros(1))
+    values = (mission.duration, *(v.depth for v in mission.vehicles), *(chosen.parameters.get(key) for key in TEXTS))
+    rows = memo.recall("field", (mission.origin, *paths), lambda: _gridded(mission, origin, paths), values)
+    numbers = {key: value for key, value in chosen.parameters.items() if key not in TEXTS}
+    return memo.recall("gridded", (chosen,), lambda: Choice(laws_of("current")["gridded"], numbers)), rows
+
+
+def _sheared(chosen: LawChoice) -> tuple[Choice, np.ndarray]:
+    numbers = {key: value for key, value in chosen.parameters.items() if key != PROFILE}
+    return Choice(laws_of("current")["sheared"], numbers), _profile(chosen.parameters[PROFILE])
+
+
+def _gridded(mission: Mission, origin: GeoPoint | None, paths: list[np.ndarray]) -> np.ndarray:
+    """The table of a gridded current."""
     if origin is None:
         raise mission.error(
             "origin", "a gridded current needs to know where the mission is; give latitude and longitude"
         )
-    texts = {key: chosen.parameters.get(key) for key in TEXTS}
-    numbers = {key: value for key, value in chosen.parameters.items() if key not in texts}
+    texts = {key: mission.current.parameters.get(key) for key in TEXTS}
     window = Window(
         origin=origin,
         start_time=texts["start_time"],
@@ -167,7 +206,13 @@ def _current(
         raise mission.error("current.file", str(problem)) from None
     if uncovered:
         raise mission.error("current.file", uncovered)
-    return Choice(laws_of("current")["gridded"], numbers), rows
+    return rows
+
+
+def _seabed(mission: Mission, origin: GeoPoint | None, paths: list[np.ndarray]) -> np.ndarray:
+    """The table of a gridded seabed."""
+    is_gridded = mission.bathymetry is not None and mission.bathymetry.name == "gridded"
+    return read_seabed(mission, origin, [outline(path, 20.0)[:, 1:] for path in paths] if is_gridded else [])
 
 
 def _profile(points: Sequence[CurrentPoint]) -> np.ndarray:
@@ -186,24 +231,40 @@ def _choice(chosen: LawChoice, catalog: Catalog) -> Choice:
     return Choice(law, {name: float(value) for name, value in chosen.parameters.items()})
 
 
-def _vehicle(mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice, catalog: Catalog) -> VehiclePlan:
+def _vehicle(
+    mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice, catalog: Catalog, memo: Memo
+) -> VehiclePlan:
+    def choice(chosen: LawChoice) -> Choice:
+        return memo.recall("law", (chosen,), lambda: _choice(chosen, catalog))
+
+    seabed = mission.bathymetry
     laws = {
-        "guidance": _choice(vehicle.guidance.law, catalog),
-        "reference_point": _choice(vehicle.guidance.reference_point, catalog),
-        "compensation": _choice(vehicle.compensation, catalog),
-        "current_observer": _choice(vehicle.current_observer, catalog),
-        "position": _choice(vehicle.position, catalog),
-        "neighbors": _choice(vehicle.neighbors, catalog),
-        "coordination": _choice(vehicle.coordination.law, catalog),
-        "messaging": _choice(vehicle.messaging, catalog),
-        "model": _choice(vehicle.model, catalog),
-        "autopilot": _autopilot(vehicle, catalog),
-        "acoustics": _choice(vehicle.acoustics, catalog),
+        "guidance": choice(vehicle.guidance.law),
+        "reference_point": choice(vehicle.guidance.reference_point),
+        "compensation": choice(vehicle.compensation),
+        "current_observer": choice(vehicle.current_observer),
+        "position": choice(vehicle.position),
+        "neighbors": choice(vehicle.neighbors),
+        "coordination": choice(vehicle.coordination.law),
+        "messaging": choice(vehicle.messaging),
+        "model": choice(vehicle.model),
+        "autopilot": memo.recall("autopilot", (vehicle.model, vehicle.autopilot), lambda: _autopilot(vehicle, catalog)),
+        "acoustics": choice(vehicle.acoustics),
         "current": water,
-        **({"bathymetry": _choice(numbers_only(mission.bathymetry), catalog)} if mission.bathymetry else {}),
-        **_sensors(vehicle, mission.tick, mission.bathymetry is not None, catalog),
+        **({"bathymetry": _seabed_law(seabed, catalog, memo)} if seabed else {}),
+        **memo.recall(
+            "sensors",
+            (vehicle.sensors, vehicle.model),
+            lambda: _sensors(vehicle, mission.tick, seabed is not None, catalog),
+            (mission.tick, seabed is not None),
+        ),
     }
-    state, place = _start(vehicle, path, laws["model"])
+    state, place = memo.recall(
+        "start",
+        (vehicle.start, path, laws["model"]),
+        lambda: _start(vehicle, path, laws["model"], memo),
+        start_depth(vehicle),
+    )
     believed = vehicle.initial_estimate
     return VehiclePlan(
         vehicle.name,
@@ -212,17 +273,10 @@ def _vehicle(mission: Mission, vehicle: Vehicle, path: np.ndarray, water: Choice
         state,
         (believed.north, believed.east) if believed else None,
         place,
-        Setup(
-            deepest(vehicle),
-            float(vehicle.speed_reference == "ground"),
-            float(vehicle.end != "continue"),
-            float(vehicle.end == "surface"),
-            float("usbl" in laws),
-            float("fixes" in getattr(laws["position"].law.memory_type, "_fields", ())),
-        ),
-        order_book(mission, vehicle, path),
-        safety_of(mission, vehicle),
-        _datasheet(laws),
+        memo.same(_setup(vehicle, laws)),
+        memo.same(order_book(mission, vehicle, path, memo)),
+        memo.same(safety_of(mission, vehicle)),
+        memo.same(_datasheet(laws)),
     )
 
 
@@ -242,6 +296,21 @@ def _datasheet(laws: dict[str, Choice]) -> Datasheet:
         told("ahrs", "heading_sigma") if of_ahrs else 0.0,
         told("ahrs", "attitude_sigma") if of_ahrs else 0.0,
     )
+
+
+def _setup(vehicle: Vehicle, laws: dict[str, Choice]) -> Setup:
+    return Setup(
+        deepest(vehicle),
+        float(vehicle.speed_reference == "ground"),
+        float(vehicle.end != "continue"),
+        float(vehicle.end == "surface"),
+        float("usbl" in laws),
+        float("fixes" in getattr(laws["position"].law.memory_type, "_fields", ())),
+    )
+
+
+def _seabed_law(seabed: LawChoice, catalog: Catalog, memo: Memo) -> Choice:
+    return memo.recall("seabed law", (seabed,), lambda: _choice(numbers_only(seabed), catalog))
 
 
 def _autopilot(vehicle: Vehicle, catalog: Catalog) -> Choice:
@@ -294,19 +363,22 @@ def _exact(law: Law, tick: float) -> Choice:
     return Choice(law, exact | {"period": tick})
 
 
-def _start(vehicle: Vehicle, path: np.ndarray, model: Choice) -> tuple[VesselState, PathPlace]:
+def _start(vehicle: Vehicle, path: np.ndarray, model: Choice, memo: Memo) -> tuple[VesselState, PathPlace]:
     """Where a vehicle starts, and where on its path that is."""
     start = vehicle.start
     if isinstance(start, RelativeStart):
-        place = start_at(path, start.along_track)
-        point = point_at(path, start.along_track)
+        along = start.along_track
+        place = memo.recall("place", (path,), lambda: start_at(path, along), along)
+        point = memo.recall("point", (path,), lambda: point_at(path, along), along)
         north = point.north - start.cross_track * point.sin_course
         east = point.east + start.cross_track * point.cos_course
         heading = point.course + start.heading_error
     else:
-        north, east, heading, place = start.north, start.east, start.heading, start_at(path, 0.0)
+        north, east, heading = start.north, start.east, start.heading
+        place = memo.recall("place", (path,), lambda: start_at(path, 0.0), 0.0)
     state = VesselState(north, east, start_depth(vehicle), heading, start.speed)
-    return state._replace(shaft_speed=_trimmed(model, start.speed)), place
+    trimmed = memo.recall("trimmed", (model,), lambda: _trimmed(model, start.speed), start.speed)
+    return state._replace(shaft_speed=trimmed), place
 
 
 def _trimmed(model: Choice, speed: float) -> float:

@@ -13,6 +13,7 @@ from cardume.missions.vehicle import LawChoice
 from cardume.units import show_quantity
 
 MOST_ROWS = 5_000_000
+RECURRING = ("tick", "plant_step", "log_period", "period")
 
 
 def check_rules(mission: Mission) -> None:
@@ -25,6 +26,18 @@ def check_rules(mission: Mission) -> None:
     found = [broken for rule in rules for broken in rule(mission)]
     if found:
         raise MissionError(Problem(mission.where(key), message) for key, message in found)
+
+
+def is_ruled(key: str, value: object) -> bool:
+    """Whether the rules may hold for one value of a distribution and not for another.
+
+    Args:
+        key: of the value.
+        value: its distribution.
+    """
+    numbers = getattr(value, "options", (0.0,))
+    is_number = all(isinstance(number, float) for number in numbers)
+    return not is_number or key.rpartition(".")[2] in RECURRING or key == "duration"
 
 
 def _step_rules(mission: Mission) -> Iterator[tuple[str, str]]:

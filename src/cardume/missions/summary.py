@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from cardume.errors import DataError
 from cardume.missions.mission import Requirement
-from cardume.simulation.flight import METRICS, Flight, Metrics
+from cardume.simulation.flight import METRICS, Flight, Limit, Metrics
 from cardume.units import printable
 
 FORMAT_VERSION = 1
@@ -40,17 +40,29 @@ def judge(requirements: Iterable[Requirement], metrics: Metrics) -> tuple[Verdic
 
     The limits that vehicles have of their own are judged as requirements too, those of all alike as one of the fleet.
     """
-    required = [*requirements]
-    required += [limit for limit in _own_limits(metrics) if not any(_covers(r, limit) for r in required)]
+    required = all_required(requirements, metrics.limits, len(metrics.vehicles))
     return tuple(_judge_one(requirement, metrics) for requirement in required)
 
 
-def _own_limits(metrics: Metrics) -> list[Requirement]:
+def all_required(requirements: Iterable[Requirement], limits: Sequence[Limit], num_vehicles: int) -> list[Requirement]:
+    """What the mission requires, and the limits that vehicles have of their own.
+
+    Args:
+        requirements: of the mission.
+        limits: of its vehicles.
+        num_vehicles: how many it has.
+    """
+    required = [*requirements]
+    own = _own_limits(limits, num_vehicles)
+    return required + [limit for limit in own if not any(_covers(r, limit) for r in required)]
+
+
+def _own_limits(limits: Sequence[Limit], num_vehicles: int) -> list[Requirement]:
     """The limits of the vehicles as requirements, each once."""
     found: list[Requirement] = []
-    for metric, value in dict.fromkeys((limit.metric, limit.limit) for limit in metrics.limits):
-        names = [limit.vehicle for limit in metrics.limits if (limit.metric, limit.limit) == (metric, value)]
-        of = [None] if None in names or len(names) == len(metrics.vehicles) else names
+    for metric, value in dict.fromkeys((limit.metric, limit.limit) for limit in limits):
+        names = [limit.vehicle for limit in limits if (limit.metric, limit.limit) == (metric, value)]
+        of = [None] if None in names or len(names) == num_vehicles else names
         found += [Requirement(metric=metric, limit=value, unit=METRICS[metric].unit, vehicle=name) for name in of]
     return found
 

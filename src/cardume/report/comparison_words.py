@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from cardume.simulation.flight import METRICS
-from cardume.studies.comparing import Comparison, value_of
+from cardume.studies.comparing import Comparison
 from cardume.studies.statistics import is_clear
 
 MOST_TOLD = 6  # arms of which a sentence is made; the table has all
@@ -33,9 +33,10 @@ def _sentences(comparison: Comparison) -> Iterator[str]:
         if len(comparison.arms) - 1 > MOST_TOLD:
             yield f"Of {len(comparison.arms) - 1 - MOST_TOLD} more arms the table tells."
     for arm, label in enumerate(comparison.labels):
-        lost = [run for run in comparison.runs[arm] if not run.failure and np.isnan(value_of(run, "settling_time"))]
+        flew = [not why for why in comparison.runs[arm].failure]
+        lost = int((np.isnan(comparison.values("settling_time")[arm]) & flew).sum())
         if lost:
-            which = f"{len(lost)} of {count} missions" if count > 1 else "its mission"
+            which = f"{lost} of {count} missions" if count > 1 else "its mission"
             yield f"{label} did not settle on its path in {which}: most numbers are missing there."
         if failed := comparison.failures(arm):
             seed, why = failed[0]

@@ -8,10 +8,14 @@ from cardume.compiler import WIDTH
 from cardume.simulation.engine import advance
 from cardume.simulation.fleet import Tables
 from cardume.simulation.plan import Plan
-from cardume.simulation.tables import join, lane, make_tables
+from cardume.simulation.side_by_side import join, lane
+from cardume.simulation.tables import make_tables
 from cardume.simulation.tick import CODE, FINE, TIME, VEHICLE
 
 SLICE = 1000  # ticks between two looks at whether to stop: some milliseconds
+IN_LANES = (
+    100_000  # the same in ticks of vehicles, for eight missions: a thread that looks up too often waits for others
+)
 SIGNALS = {1.0: "state", 2.0: "current", 3.0: "reference", 4.0: "position estimate"}
 
 
@@ -58,7 +62,24 @@ def fly(
     Returns:
         The mission after its flight, whole or as far as it came.
     """
-    tables, now, total = make_tables(plan), 0, plan.num_ticks
+    return fly_alone(plan, make_tables(plan), should_stop, progress)
+
+
+def fly_alone(
+    plan: Plan,
+    tables: Tables,
+    should_stop: Callable[[], bool] = lambda: False,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> Flown:
+    """Fly one mission whose tables were made before.
+
+    Args:
+        plan: the mission.
+        tables: its own, changed in place.
+        should_stop: asked every few milliseconds.
+        progress: called with ticks flown and ticks in all.
+    """
+    now, total = 0, plan.num_ticks
     while now < total:
         if should_stop():
             return Flown(plan, tables, now, stopped=True)
@@ -79,7 +100,7 @@ def fly_batch(
     """Fly many missions on a pool of threads; the bits are those of `fly`, whatever the number of threads.
 
     Args:
-        plans: the missions; for lanes, of the same laws, sizes and lengths.
+        plans: the missions; for lanes, of the same laws and sizes.
         threads: [-] how many at once.
         lanes: [-] fly eight in one SIMD register each.
         should_stop: asked every few milliseconds; then all that fly or wait end where they are.
@@ -99,20 +120,42 @@ def fly_batch(
 
 
 def _fly_lanes(plans: Sequence[Plan], should_stop: Callable[[], bool]) -> list[Flown]:
-    if len({plan.num_ticks for plan in plans}) > 1:
-        raise ValueError("missions in lanes must last equally long")
     joined = join([make_tables(plan, lanes=True) for plan in plans])
-    ticks, total = 0, plans[0].num_ticks
-    while ticks < total and not should_stop():
-        stop = min(ticks + SLICE, total)
-        ticks = int(advance(joined, ticks, stop))
-        if ticks < stop:
-            break  # every lane failed
-    singles = [lane(joined, k) for k in range(len(plans))]
+    return fly_joined(plans, joined, lambda k: lane(joined, k), should_stop)
+
+
+def fly_joined(
+    plans: Sequence[Plan],
+    joined: Tables,
+    leave: Callable[[int], Tables],
+    should_stop: Callable[[], bool] = lambda: False,
+) -> list[Flown]:
+    """Fly missions in the lanes of the same tables, each to its own end.
+
+    Args:
+        plans: at most eight missions.
+        joined: their tables, changed in place.
+        leave: what to keep of a lane when its mission has ended.
+        should_stop: asked every few milliseconds.
+
+    Returns:
+        The missions after their flight; one in which a number is none was flown again alone.
+    """
+    kept: dict[int, Flown] = {}
+    ticks, goes_on = 0, True
+    slice_ = max(SLICE, IN_LANES // len(plans[0].vehicles))
+    for end in sorted({plan.num_ticks for plan in plans}):
+        while ticks < end and goes_on and not should_stop():
+            stop = min(ticks + slice_, end)
+            ticks = int(advance(joined, ticks, stop))
+            goes_on = ticks == stop  # else every lane failed
+        for k, plan in enumerate(plans):
+            if plan.num_ticks == end:
+                kept[k] = Flown(plan, leave(k), ticks, stopped=ticks < end)
     # One that fails in a lane goes on until the others are done; alone it ends where it failed.
     return [
-        fly(p, should_stop=should_stop) if trouble_in(p, t) else Flown(p, t, ticks, stopped=ticks < total)
-        for p, t in zip(plans, singles, strict=True)
+        fly(plan, should_stop=should_stop) if trouble_in(plan, kept[k].tables) else kept[k]
+        for k, plan in enumerate(plans)
     ]
 
 

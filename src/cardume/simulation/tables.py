@@ -1,15 +1,16 @@
-"""From plans to tables: numpy arrays that hold one mission, or eight side by side in lanes."""
+"""From plans to tables: numpy arrays that hold one mission."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from cardume.compiler import WIDTH, Layout
+from cardume.compiler import Layout
 from cardume.compiler.reach import fields_read
-from cardume.laws import COLUMNS, FAMILIES
-from cardume.maths.random import random_key
+from cardume.laws import COLUMNS, FAMILIES, Law
+from cardume.maths.random import Key, random_key
 from cardume.onboard.mind import (
     OTHERS,
     OWN,
@@ -32,6 +33,7 @@ from cardume.paths.table import PathPlace
 from cardume.signals import Noise
 from cardume.simulation.air import NEVER
 from cardume.simulation.fleet import (
+    KEY,
     NUM_SENSORS,
     SEEN,
     SENSORS,
@@ -44,6 +46,7 @@ from cardume.simulation.fleet import (
     Timing,
     Whole,
 )
+from cardume.simulation.memo import NO_MEMO, Memo
 from cardume.simulation.noise import NOISE_WIDTH
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
 from cardume.simulation.recording import LOG, MESSAGE_LOG, NUM_COUNTS
@@ -58,116 +61,139 @@ IN_PLANT_STEPS = ("autopilot", "model")  # called once a plant step, the others 
 PER_OTHER = frozenset({"coordination", "neighbors", "usbl", "acoustics"})
 
 
-def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True) -> Tables:
+def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: Memo = NO_MEMO) -> Tables:
     """Write the tables of one mission.
 
     Args:
         plan: the mission.
-        lanes: [-] look the laws up for the lanes kernel; `join` then puts eight missions together.
+        lanes: [-] look the laws up for the lanes kernel; `side_by_side.join` then puts eight missions together.
         with_laws: [-] False leaves their addresses out, and compiles none: such tables have the right types, no more.
+        memo: of missions that are nearly the same, with which these tables then share arrays; `own` copies them.
 
     Returns:
         Tables of (n,) arrays.
     """
     vehicles = [plan.vehicles[k] for k in plan.order]
     size = len(vehicles)
-    gains, memory = _gains(plan, vehicles), _memories(vehicles)
-    graph, list_width, widest = _graph(plan, vehicles)
-    slots, past_size = _slots(vehicles), _past_size(vehicles, plan.tick)
-    paths, path_starts = _paths(vehicles)
+    gains, memory = _gains(plan, vehicles, memo), _memories(vehicles, memo)
+    graph, list_width, widest = memo.recall(
+        "graph",
+        (plan.hears, *(v.setup for v in vehicles)),
+        lambda: _graph(plan, vehicles),
+    )
+    slots, past_size = _slots(vehicles, memo), _past_size(vehicles, plan.tick, memo)
+    paths, path_starts = memo.recall("paths", tuple(v.path for v in vehicles), lambda: _paths(vehicles))
     records = math.ceil(plan.num_ticks * plan.tick / plan.log_period - 1e-9) + 1 if plan.log_period > 0 else 0
     room = _message_room(plan, vehicles, widest) if records else 0
-    messages = inbox_width(size)
-    links = max(1, size * widest)
-    return Tables(
-        Whole(
-            size,
-            plan.substeps,
-            gains.shape[1],
-            memory.shape[1],
-            past_size,
-            list_width,
-            slots,
-            messages,
-            widest,
-            int(any("bathymetry" in v.laws for v in vehicles)),
-            int(any(v.orders.has_phases for v in vehicles)),
-            int(plan.is_watched),
-            int(any(_noise_pairs(v.laws["current"]) for v in vehicles if "current" in v.laws)),
-        ),
-        plan.tick,
-        _handles(vehicles, size, lanes) if with_laws else np.zeros(size * len(FAMILIES) * COLUMNS, np.int64),
-        gains.ravel(),
-        memory.ravel(),
-        np.concatenate([_vehicle_row(v) for v in vehicles]),
-        np.concatenate([_mind_row(v) for v in vehicles]),
-        np.tile(np.concatenate([_known_of(v) for v in vehicles]), size),
-        np.full(size * size * USBL_COLUMNS, np.nan),
-        np.concatenate([_timing_row(v, plan.tick) for v in vehicles]),
-        np.concatenate([*(_key_row(v, plan.seed) for v in vehicles), random_key(plan.seed, "current")]),
-        np.zeros((size * NUM_SENSORS + 1) * NOISE_WIDTH),
-        np.zeros(max(1, size * past_size * SEEN.width)),
-        paths,
-        path_starts,
-        graph,
-        *_orders(vehicles),
-        np.array(plan.field, float),  # never read-only: that would be another type, and compile the engine again
-        np.array(plan.seabed, float),
-        np.full(size * slots * messages, np.nan),
-        np.zeros(size),
-        np.zeros(size, np.int64),
-        np.full(links, NEVER),
-        np.full(links * slots, NEVER),
-        np.full(links * messages, np.nan),
-        np.concatenate([_row(SCORES, v.safety) for v in vehicles]),
-        _row(FLEET_SCORES, FleetScore(separation_limit=plan.separation)),
-        np.zeros(size * HISTOGRAMS * BINS),
-        np.zeros(TROUBLE_WIDTH),
-        np.full(max(1, records * size * LOG.width), np.nan),
-        np.full(max(1, records * size * size), np.nan),
-        np.full(max(1, room * MESSAGE_LOG.width), np.nan),
-        _counts(records, room, plan),
-        _row(RULES, plan.rules),
+    whole = Whole(
+        size,
+        plan.substeps,
+        gains.shape[1],
+        memory.shape[1],
+        past_size,
+        list_width,
+        slots,
+        inbox_width(size),
+        widest,
+        int(any("bathymetry" in v.laws for v in vehicles)),
+        int(any(v.orders.has_phases for v in vehicles)),
+        int(plan.is_watched),
+        int(any(v.laws["current"].law.asks_for(Noise) for v in vehicles if "current" in v.laws)),
     )
+    blank = memo.recall("blank", (), lambda: _blank(whole, records, room), (whole, records, room))
+    tables = blank._replace(
+        tick=plan.tick,
+        handles=_handles(vehicles, lanes, memo) if with_laws else blank.handles,
+        gains=gains.ravel(),
+        memory=memory.ravel(),
+        paths=paths,
+        path_starts=path_starts,
+        graph=graph,
+        keys=_keys(vehicles, plan.seed, memo),
+        # never read-only: that would be another type, and compile the engine again
+        field=memo.recall("field table", (plan.field,), lambda: np.array(plan.field, float)),
+        seabed=memo.recall("seabed table", (plan.seabed,), lambda: np.array(plan.seabed, float)),
+        counts=memo.recall(
+            "counts", (), lambda: _counts(records, room, plan), (records, room, plan.log_period, plan.tick)
+        ),
+    )
+    return tables._replace(**_rows(plan, vehicles, memo))
 
 
-def join(tables: Sequence[Tables]) -> Tables:
-    """Put up to eight missions of the same shape side by side; missing ones repeat the last.
+def _rows(plan: Plan, vehicles: Sequence[VehiclePlan], memo: Memo) -> dict[str, Any]:
+    """The tables that hold records of vehicles, one vehicle after the other."""
 
-    Args:
-        tables: of missions with the same laws and sizes, made for lanes.
+    def table(
+        name: str, keys: Sequence[tuple[tuple[Any, ...], Hashable]], make: Callable[[VehiclePlan], np.ndarray]
+    ) -> np.ndarray:
+        """One row for each vehicle, made of the parts and values of its key."""
+        made = zip(vehicles, keys, strict=True)
+        rows = tuple(memo.recall(name, parts, partial(make, v), values) for v, (parts, values) in made)
+        return memo.recall(f"all {name}", rows, lambda: np.concatenate(rows))
 
-    Returns:
-        Tables of (n, 8) arrays; whole numbers and the gridded current are the first mission's.
-
-    Raises:
-        ValueError: missions that differ in what all lanes share, or in the size of a table.
-    """
-    full = [*tables, *[tables[-1]] * (WIDTH - len(tables))]
-    noisy = max(t.whole.has_weather for t in full)  # a drawn variation of zero does not keep missions apart
-    full = [t._replace(whole=t.whole._replace(has_weather=noisy)) for t in full]
-    first = full[0]
-    joined = []
-    for name in Tables._fields:
-        parts = [getattr(t, name) for t in full]
-        is_shared = name in ("field", "seabed") or not isinstance(parts[0], np.ndarray) or parts[0].dtype == np.int64
-        if not all(_fit(part, parts[0], is_shared) for part in parts):
-            raise ValueError(f"missions in lanes must have the same laws, sizes and graph; these differ in '{name}'")
-        joined.append(getattr(first, name) if is_shared else np.ascontiguousarray(np.stack(parts, axis=-1)))
-    return Tables._make(joined)
-
-
-def _fit(part: Any, first: Any, is_shared: bool) -> bool:
-    """Whether a mission's part can stand beside the first one's: equal, or of its shape."""
-    if not is_shared:
-        return bool(part.shape == first.shape)
-    return part is first or np.array_equal(part, first, equal_nan=True)
+    tick = plan.tick
+    known = table("known row", [((v.place,), None) for v in vehicles], _known_of)
+    orders = tuple(v.orders for v in vehicles)
+    numbers, features = memo.recall("orders", orders, lambda: _orders(vehicles))
+    return {
+        "vehicles": table("vehicle row", [((v.state, v.place), None) for v in vehicles], _vehicle_row),
+        "minds": table("mind row", [((v.setup, v.datasheet, v.orders, v.path), _estimate(v)) for v in vehicles], _mind_row),
+        "others": memo.recall("others", (known,), lambda: np.tile(known, len(vehicles))),
+        "timings": table("timing row", [(_sensors_of(v), tick) for v in vehicles], lambda v: _timing_row(v, tick, memo)),
+        "orders": numbers,
+        "features": features,
+        "scores": table("score row", [((v.safety,), None) for v in vehicles], lambda v: _row(SCORES, v.safety)),
+        "fleet_score": memo.recall(
+            "fleet score",
+            (),
+            lambda: _row(FLEET_SCORES, FleetScore(separation_limit=plan.separation)),
+            plan.separation,
+        ),
+        "requirements": memo.recall("rules", (), lambda: _row(RULES, plan.rules), plan.rules),
+    }
 
 
-def lane(tables: Tables, which: int) -> Tables:
-    """One mission out of eight."""
-    parts = [getattr(tables, name) for name in Tables._fields]
-    return Tables._make(np.ascontiguousarray(p[:, which]) if np.ndim(p) == 2 else p for p in parts)
+def _blank(whole: Whole, records: int, room: int) -> Tables:
+    """Tables in which nothing is said or measured yet; what depends on more than sizes is left empty."""
+    size, links = whole.size, max(1, whole.size * whole.widest)
+    none, nothing = np.zeros(0), np.zeros(0, np.int64)
+    return Tables(
+        whole=whole,
+        tick=0.0,
+        handles=np.zeros(size * len(FAMILIES) * COLUMNS, np.int64),
+        gains=none,
+        memory=none,
+        vehicles=none,
+        minds=none,
+        others=none,
+        usbl=np.full(size * size * USBL_COLUMNS, np.nan),
+        timings=none,
+        keys=none,
+        noise=np.zeros((size * NUM_SENSORS + 1) * NOISE_WIDTH),
+        past=np.zeros(max(1, size * whole.past_size * SEEN.width)),
+        paths=none,
+        path_starts=nothing,
+        graph=nothing,
+        orders=none,
+        features=nothing,
+        field=none,
+        seabed=none,
+        outbox=np.full(size * whole.slots * whole.message_width, np.nan),
+        sending=np.zeros(size),
+        sent=np.zeros(size, np.int64),
+        due=np.full(links, NEVER),
+        arrivals=np.full(links * whole.slots, NEVER),
+        inbox=np.full(links * whole.message_width, np.nan),
+        scores=none,
+        fleet_score=none,
+        histograms=np.zeros(size * HISTOGRAMS * BINS),
+        trouble=np.zeros(TROUBLE_WIDTH),
+        log=np.full(max(1, records * size * LOG.width), np.nan),
+        predictions=np.full(max(1, records * size * size), np.nan),
+        messages=np.full(max(1, room * MESSAGE_LOG.width), np.nan),
+        counts=nothing,
+        requirements=none,
+    )
 
 
 def _row(layout: Layout, *records: Any) -> np.ndarray:
@@ -217,66 +243,102 @@ def _estimate(vehicle: VehiclePlan) -> tuple[float, float]:
     return vehicle.estimate or (vehicle.state.north, vehicle.state.east)
 
 
-def _timing_row(vehicle: VehiclePlan, tick: float) -> np.ndarray:
-    row = []
-    for sensor in SENSORS:
-        timing = Timing()
-        if sensor in vehicle.laws:
-            choice = vehicle.laws[sensor]
-            latency = float(round(choice.value("latency") / tick))
-            period = float(max(1, round(choice.value("period") / tick)))
-            timing = Timing(latency, 0.0, period, latency, float(_noise_pairs(choice)))
-        row.append(_row(TIMING, timing))
-    return np.concatenate(row)
+def _sensors_of(vehicle: VehiclePlan) -> tuple[Choice | None, ...]:
+    return tuple(vehicle.laws.get(sensor) for sensor in SENSORS)
 
 
-def _noise_pairs(choice: Choice) -> int:
-    """How many pairs of random numbers a law reads in a tick; none where it is told that all its noise is zero.
+def _timing_row(vehicle: VehiclePlan, tick: float, memo: Memo) -> np.ndarray:
+    def timing(choice: Choice | None) -> np.ndarray:
+        return memo.recall("timing", (choice,), lambda: _row(TIMING, _timing(choice, tick, memo)), tick)
+
+    return np.concatenate([timing(choice) for choice in _sensors_of(vehicle)])
+
+
+def _timing(choice: Choice | None, tick: float, memo: Memo) -> Timing:
+    if choice is None:
+        return Timing()
+    law, latency = choice.law, float(round(choice.value("latency") / tick))
+    period = float(max(1, round(choice.value("period") / tick)))
+    read = memo.recall("noise read", (law,), lambda: fields_read(law.function, Noise))
+    return Timing(latency, 0.0, period, latency, float(_noise_pairs(choice, read)))
+
+
+def _noise_pairs(choice: Choice, read: set[str]) -> int:
+    """How many pairs of random numbers a sensor's law reads; none where it is told that all its noise is zero.
 
     Of a user's law it is never known that its noise is zero.
     """
     sizes = [p.name for p in choice.law.parameters if any(part in p.name for part in CHANCES)]
     if choice.law.is_builtin and sizes and not any(choice.value(name) for name in sizes):
         return 0
-    read = fields_read(choice.law.function, Noise)
     return 2 if read & {"c", "d"} else 1 if read else 0
 
 
-def _key_row(vehicle: VehiclePlan, seed: int) -> np.ndarray:
-    return np.concatenate([random_key(seed, stream, vehicle.name) for stream in STREAMS])
+def _keys(vehicles: Sequence[VehiclePlan], seed: int, memo: Memo) -> np.ndarray:
+    """The keys of all streams of all vehicles, then the fleet's own."""
+    names = tuple(v.name for v in vehicles)
+    keys = memo.recall("keys", (), lambda: _keys_without_seed(names), names).copy()
+    seeded = random_key(seed, "current")
+    for field in ("seed_low", "seed_high"):
+        keys[KEY.column(Key, field) :: KEY.width] = getattr(seeded, field)
+    return keys
 
 
-def _handles(vehicles: Sequence[VehiclePlan], size: int, lanes: bool) -> np.ndarray:
+def _keys_without_seed(names: Sequence[str]) -> np.ndarray:
+    keys = [random_key(0, stream, name) for name in names for stream in STREAMS]
+    return np.concatenate([*keys, random_key(0, "current")])
+
+
+def _handles(vehicles: Sequence[VehiclePlan], lanes: bool, memo: Memo) -> np.ndarray:
     """(vehicle, family, 4) whole numbers: handle, first gain, first memory row, memory width."""
+    laws = [[(f, v.laws[f].law) for f in FAMILIES if f in v.laws] for v in vehicles]
+    parts = tuple(law for own in laws for _, law in own)
+    return memo.recall("handles", parts, lambda: _handles_of(laws, lanes), lanes)
+
+
+def _handles_of(laws: Sequence[Sequence[tuple[str, Law]]], lanes: bool) -> np.ndarray:
+    size = len(laws)
     table = np.zeros((size, len(FAMILIES), COLUMNS), np.int64)
-    for row, vehicle in zip(table, vehicles, strict=True):
+    for row, own in zip(table, laws, strict=True):
         gain = memory = 0
-        for place, family in enumerate(FAMILIES):
-            if family in vehicle.laws:
-                law = vehicle.laws[family].law
-                width = law.initial_memory().size
-                row[place] = law.handle(lanes), gain, memory, width
-                gain += law.gains_width
-                memory += width * (size if family in PER_OTHER else 1)
+        for family, law in own:
+            width = law.initial_memory().size
+            row[FAMILIES.index(family)] = law.handle(lanes), gain, memory, width
+            gain += law.gains_width
+            memory += width * (size if family in PER_OTHER else 1)
     return table.ravel()
 
 
-def _gains(plan: Plan, vehicles: Sequence[VehiclePlan]) -> np.ndarray:
+def _gains(plan: Plan, vehicles: Sequence[VehiclePlan], memo: Memo) -> np.ndarray:
     steps = dict.fromkeys(FAMILIES, plan.tick) | dict.fromkeys(IN_PLANT_STEPS, plan.tick / plan.substeps)
-    rows = [[v.laws[f].law.gains(steps[f], **v.laws[f].parameters) for f in FAMILIES if f in v.laws] for v in vehicles]
-    return _stacked([np.concatenate(row or [np.zeros(0)]) for row in rows])
+
+    def gains(choice: Choice, step: float) -> np.ndarray:
+        return memo.recall("gains", (choice,), lambda: choice.law.gains(step, **choice.parameters), step)
+
+    def row(vehicle: VehiclePlan) -> np.ndarray:
+        parts = tuple(gains(vehicle.laws[f], steps[f]) for f in FAMILIES if f in vehicle.laws)
+        return memo.recall("all gains", parts, lambda: np.concatenate(parts or (np.zeros(0),)))
+
+    return _stacked([row(vehicle) for vehicle in vehicles], memo)
 
 
-def _memories(vehicles: Sequence[VehiclePlan]) -> np.ndarray:
-    rows = []
-    for vehicle in vehicles:
-        parts = [np.zeros(0)]
-        for family in FAMILIES:
-            if family in vehicle.laws:
-                start = _initial_memory(vehicle, family, vehicle.laws[family])
-                parts += [start] * (len(vehicles) if family in PER_OTHER else 1)
-        rows.append(np.concatenate(parts))
-    return _stacked(rows)
+def _memories(vehicles: Sequence[VehiclePlan], memo: Memo) -> np.ndarray:
+    size = len(vehicles)
+
+    def row(vehicle: VehiclePlan) -> np.ndarray:
+        parts = (vehicle.place, *(choice.law for choice in vehicle.laws.values()))
+        return memo.recall("memory", parts, lambda: _memory_row(vehicle, size), (size, _estimate(vehicle)))
+
+    return _stacked([row(vehicle) for vehicle in vehicles], memo)
+
+
+def _memory_row(vehicle: VehiclePlan, size: int) -> np.ndarray:
+    parts = [np.zeros(0)]
+    for family in FAMILIES:
+        if family in vehicle.laws:
+            start = _initial_memory(vehicle, family, vehicle.laws[family])
+            parts += [start] * (size if family in PER_OTHER else 1)
+    return np.concatenate(parts)
 
 
 def _initial_memory(vehicle: VehiclePlan, family: str, choice: Choice) -> np.ndarray:
@@ -292,9 +354,16 @@ def _initial_memory(vehicle: VehiclePlan, family: str, choice: Choice) -> np.nda
     return start
 
 
-def _stacked(rows: Sequence[np.ndarray]) -> np.ndarray:
-    width = max(1, *(row.size for row in rows))
-    return np.stack([np.pad(row, (0, width - row.size)) for row in rows])
+def _stacked(rows: Sequence[np.ndarray], memo: Memo) -> np.ndarray:
+    """Rows under one another, filled up with zeros to the longest."""
+
+    def stack() -> np.ndarray:
+        table = np.zeros((len(rows), max(1, *(row.size for row in rows))))
+        for place, row in zip(table, rows, strict=True):
+            place[: row.size] = row
+        return table
+
+    return memo.recall("stacked", tuple(rows), stack)
 
 
 def _paths(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
@@ -319,10 +388,15 @@ def _graph(plan: Plan, vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, int
     return table.ravel(), width, max(len(x) for x in sources)
 
 
-def _slots(vehicles: Sequence[VehiclePlan]) -> int:
+def _slots(vehicles: Sequence[VehiclePlan], memo: Memo) -> int:
     """How many messages of one sender can be under way: the longest delay over the shortest period."""
-    delays = [_parameter(v.laws["acoustics"], "delay", 2.0) for v in vehicles]
-    periods = [_parameter(v.laws["messaging"], "period", 0.5) for v in vehicles]
+
+    def value(vehicle: VehiclePlan, family: str, name: str, otherwise: float) -> float:
+        choice = vehicle.laws[family]
+        return memo.recall(name, (choice,), lambda: _parameter(choice, name, otherwise))
+
+    delays = [value(v, "acoustics", "delay", 2.0) for v in vehicles]
+    periods = [value(v, "messaging", "period", 0.5) for v in vehicles]
     return min(MOST_SLOTS, math.ceil((max(delays) + 2.0) / min(periods)) + 2)
 
 
@@ -330,9 +404,14 @@ def _parameter(choice: Choice, name: str, otherwise: float) -> float:
     return choice.value(name) if any(p.name == name for p in choice.law.parameters) else otherwise
 
 
-def _past_size(vehicles: Sequence[VehiclePlan], tick: float) -> int:
-    latencies = [v.laws[s].value("latency") for v in vehicles for s in SENSORS if s in v.laws]
-    return 1 + max([0, *(round(latency / tick) for latency in latencies)])
+def _past_size(vehicles: Sequence[VehiclePlan], tick: float, memo: Memo) -> int:
+    """How many ticks sensors look back, and this one."""
+
+    def longest(vehicle: VehiclePlan) -> float:
+        sensors = [choice for choice in _sensors_of(vehicle) if choice is not None]
+        return memo.recall("latency", tuple(sensors), lambda: max([0.0, *(c.value("latency") for c in sensors)]))
+
+    return 1 + max(round(longest(vehicle) / tick) for vehicle in vehicles)
 
 
 def _message_room(plan: Plan, vehicles: Sequence[VehiclePlan], widest: int) -> int:

@@ -12,7 +12,8 @@ from cardume.errors import InputError
 from cardume.missions.mission import Mission
 from cardume.simulation.flight import METRICS
 from cardume.studies.arms import Arm, Given, as_text, check_metrics, make_arms
-from cardume.studies.flying import Progress, Run, fly_all
+from cardume.studies.flying import Progress, RunTable, fly_all
+from cardume.studies.run_table import FLEET
 from cardume.studies.statistics import CONFIDENCE, Estimate, estimate, is_clear, paired_difference, shared_confidence
 
 DEFAULT_RUNS = 20
@@ -42,7 +43,7 @@ class Comparison:
         seeds: that all arms were flown with.
         asked: how many seeds were asked for; more than `seeds` where the comparison was interrupted.
         metrics: that were asked for, or the usual ones that have numbers.
-        runs: for each arm, one for each seed.
+        runs: for each arm a table with a row for each seed.
     """
 
     arms: tuple[Arm, ...]
@@ -50,7 +51,7 @@ class Comparison:
     seeds: tuple[int, ...]
     asked: int
     metrics: tuple[str, ...]
-    runs: tuple[tuple[Run, ...], ...]
+    runs: tuple[RunTable, ...]
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -71,7 +72,7 @@ class Comparison:
         Returns:
             (arm, seed) array in the metric's unit; NaN where a run has no such number.
         """
-        return np.array([[value_of(run, metric) for run in runs] for runs in self.runs]).reshape(len(self.arms), -1)
+        return np.array([values_of(runs, metric, arm.mission) for arm, runs in zip(self.arms, self.runs, strict=True)])
 
     @cached_property
     def estimates(self) -> dict[str, tuple[Estimate, ...]]:
@@ -100,8 +101,8 @@ class Comparison:
         Args:
             arm: its place.
         """
-        told = [run.met for run in self.runs[arm] if run.met is not None]
-        return (sum(told), len(told)) if told else None
+        runs = self.runs[arm]
+        return (int(runs.met.all(axis=1).sum()), len(runs)) if runs.requirements else None
 
     def failures(self, arm: int) -> list[tuple[int, str]]:
         """Seed and reason of each run of an arm that failed while flying.
@@ -109,7 +110,7 @@ class Comparison:
         Args:
             arm: its place.
         """
-        return [(seed, run.failure) for seed, run in zip(self.seeds, self.runs[arm], strict=True) if run.failure]
+        return [(seed, why) for seed, why in zip(self.seeds, self.runs[arm].failure, strict=True) if why]
 
     def _differences(self, metric: str, confidence: float) -> tuple[Estimate, ...]:
         baseline, *others = self.values(metric)
@@ -164,21 +165,25 @@ def compare(
         should_stop=should_stop,
         allow_code=tuple(allow_code),
     )
-    flown = tuple(tuple(of_arm) for of_arm in found)
-    return Comparison(arms, tuple(texts), chosen[: len(flown[0])], len(chosen), asked or _usual(flown), flown)
+    return Comparison(
+        arms, tuple(texts), chosen[: len(found[0])], len(chosen), asked or _usual(arms, found), tuple(found)
+    )
 
 
-def value_of(run: Run, metric: str) -> float:
-    """A metric of the fleet, which is its worst vehicle's, or of a vehicle; NaN where there is none.
+def values_of(runs: RunTable, metric: str, mission: Mission) -> np.ndarray:
+    """(run,) a metric of the fleet, which is its worst vehicle's, or of a vehicle; NaN where there is none.
 
     Args:
-        run: one mission's numbers.
+        runs: of one mission.
         metric: `name`, or `vehicle.name`.
+        mission: that was flown.
     """
     vehicle, dot, name = metric.rpartition(".")
+    names = [v.name for v in mission.vehicles]
+    none = np.full(len(runs), np.nan)
     if dot:
-        return float(run.metrics.vehicles.get(vehicle, {}).get(name, np.nan))
-    return float(run.metrics.worst(name)[0])
+        return runs.metrics[name][:, names.index(vehicle)] if vehicle in names and name in runs.metrics else none
+    return runs.metrics.get(FLEET + name, none)
 
 
 def check_seeds(seeds: Sequence[int]) -> tuple[int, ...]:
@@ -202,8 +207,10 @@ def check_seeds(seeds: Sequence[int]) -> tuple[int, ...]:
     return tuple(seeds)
 
 
-def _usual(runs: Sequence[Sequence[Run]]) -> tuple[str, ...]:
+def _usual(arms: Sequence[Arm], found: Sequence[RunTable]) -> tuple[str, ...]:
     """Of the usual metrics those with a number that is more than rounding."""
-    some = [run for of_arm in runs for run in of_arm]
-    has = [name for name in USUAL if any(np.nan_to_num(value_of(run, name)) > TRIFLE for run in some)]
+    values = {
+        name: [values_of(runs, name, arm.mission) for arm, runs in zip(arms, found, strict=True)] for name in USUAL
+    }
+    has = [name for name, of_arms in values.items() if (np.nan_to_num(np.concatenate(of_arms)) > TRIFLE).any()]
     return tuple(has) or USUAL[:1]

@@ -6,7 +6,6 @@ folders that the user allowed, and only from those.
 """
 
 import hashlib
-import math
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -25,10 +24,9 @@ from cardume.errors import CardumeError, InputError, MissionError
 from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
-from cardume.simulation.flight import Metrics
 from cardume.studies.cases import Cases, Place, cases_of
 from cardume.studies.flying import Progress, fly_seeds, num_processors
-from cardume.studies.run_table import Numbers, RunTable, tabulate
+from cardume.studies.run_table import RunTable, refused
 from cardume.studies.sampling import needed
 from cardume.units import printable
 
@@ -301,7 +299,7 @@ def _fly_case(
     except MissionError as problem:
         note("fly", 0, len(seeds))
         if len(seeds) == 1:
-            return [tabulate(mission, [Numbers(int(seeds[0]), {}, Metrics(), str(problem), math.nan)])]
+            return [refused(mission, int(seeds[0]), str(problem))]
     middle = some.start + len(seeds) // 2
     halves = slice(some.start, middle), slice(middle, some.stop)
     return [table for half in halves for table in _fly_case(mission, task, half, threads, should_stop, part)]

@@ -1,95 +1,48 @@
-"""Fly many missions and keep their numbers only, in portions small enough to watch, to stop and to hold in memory."""
+"""Fly many missions and keep their numbers only, planning some while others fly, so that memory stays what it is.
+
+What every mission costs in Python decides how many fly, as only one of them can be planned at a time. So a mission is
+planned once, and of the others only what their seeds change; eight that share laws and sizes fly in one register.
+"""
 
 import math
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+import threading
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cardume.compiler import WIDTH
 from cardume.missions.available import catalog
 from cardume.missions.catalog import Catalog
-from cardume.missions.drawing import draw, draw_told
-from cardume.missions.flying import failure_of
+from cardume.missions.drawing import Drawer
 from cardume.missions.mission import Mission
 from cardume.missions.planning import make_plan
-from cardume.missions.summary import judge
-from cardume.simulation.flight import Metrics
-from cardume.simulation.fly import Flown, fly_batch
+from cardume.simulation.engine import advance
+from cardume.simulation.fleet import Tables
+from cardume.simulation.fly import Flown, fly_alone, fly_joined
+from cardume.simulation.memo import Memo
 from cardume.simulation.plan import Plan
-from cardume.simulation.results import metrics_of
+from cardume.simulation.side_by_side import join, own, shape_of
+from cardume.simulation.tables import make_tables
 from cardume.simulation.warming import warm_up
-from cardume.studies.run_table import Numbers, RunTable, tabulate
+from cardume.studies.run_table import Run, RunTable, stack, tabulate
 
-__all__ = ["LANES_FROM", "Progress", "Run", "RunTable", "fly_all", "fly_seeds", "num_processors"]
+__all__ = ["LANES_FROM", "Progress", "RunTable", "fly_all", "fly_seeds", "num_processors"]
 
 Progress = Callable[[str, int, int], None]
+Stop = Callable[[], bool]
 
 # Vehicle-ticks from which flying eight missions in one register saves more than compiling the engine for it
 # takes, where that was never done: about a minute on two processors.
 LANES_FROM = 100_000_000
-
-
-@dataclass(frozen=True)
-class Run:
-    """The numbers of one mission.
-
-    Attributes:
-        metrics: of its flight; none of one that failed.
-        met: whether it is what its mission requires; None where nothing is required.
-        failure: why it failed, if it did.
-    """
-
-    metrics: Metrics
-    met: bool | None = None
-    failure: str | None = None
-
-
-def fly_all(
-    missions: Sequence[Mission],
-    seeds: Sequence[int],
-    *,
-    progress: Progress = lambda stage, done, total: None,
-    should_stop: Callable[[], bool] = lambda: False,
-    allow_code: Iterable[str | Path] = (),
-    threads: int | None = None,
-) -> list[list[Run]]:
-    """Fly every mission with every seed; the numbers do not depend on how the work was cut.
-
-    Args:
-        missions: without sweeps.
-        seeds: by which distributions and noise are drawn, at least one.
-        progress: called with "compile" or "compare", how much is done, and how much there is.
-        should_stop: asked every few milliseconds.
-        allow_code: folders from which laws may be imported.
-        threads: how many at once; None for as many as there are processors.
-
-    Returns:
-        For each mission its runs, equally many for all: of the first seeds, as far as it came.
-
-    Raises:
-        InputError: a mission that cannot be flown.
-    """
-    known, threads = catalog(allow_code), threads or num_processors()
-    plans = [_plan(mission, seeds[0], known) for mission in missions]  # what is wrong is told before any flies
-    _warm_up(plans, progress)
-    steps = sum(plan.num_ticks * len(plan.vehicles) for plan in plans) * len(seeds)
-    with_lanes = steps >= LANES_FROM
-    portion = WIDTH * threads if with_lanes else max(1, math.ceil(2 * threads / len(missions)))
-    found: list[list[Run]] = [[] for _ in missions]
-    total = len(missions) * len(seeds)
-    progress("compare", 0, total)
-    for start in range(0, len(seeds), portion):
-        some = seeds[start : start + portion]
-        flown = _fly_portion(missions, some, known, threads, with_lanes, should_stop)
-        if should_stop():
-            break  # what a stopped mission leaves is no number of a whole one
-        for runs, more in zip(found, flown, strict=True):
-            runs += more
-        progress("compare", len(missions) * len(found[0]), total)
-    return found
+PORTION = 128  # missions that are planned before those of them that can share lanes are put together
+FEW = 2  # missions that fly faster one by one than in lanes
+MEASURED = ("scores", "histograms", "fleet_score", "trouble")
 
 
 def fly_seeds(
@@ -100,7 +53,7 @@ def fly_seeds(
     allow_code: Iterable[str | Path] = (),
     threads: int | None = None,
     lanes: bool | None = None,
-    should_stop: Callable[[], bool] = lambda: False,
+    should_stop: Stop = lambda: False,
     progress: Progress = lambda stage, done, total: None,
 ) -> RunTable:
     """Fly one mission with many seeds, for its numbers only; these do not depend on how the work was cut.
@@ -122,43 +75,80 @@ def fly_seeds(
     Raises:
         InputError: a mission that cannot be flown.
     """
-    known, threads, chances = catalog(allow_code), threads or num_processors(), chances or {}
-    if len(seeds) == 0:
-        return tabulate(mission, [])
-    given = [{key: float(values[k]) for key, values in chances.items()} for k in range(len(seeds))]
-    first = _drawn_plan(mission, int(seeds[0]), given[0], known)[0]
-    warm_up(first, lambda done, total: progress("compile", done, total))
+    (found,) = fly_all(
+        [mission],
+        seeds,
+        chances=chances,
+        allow_code=allow_code,
+        threads=threads,
+        lanes=lanes,
+        should_stop=should_stop,
+        progress=lambda stage, done, total: progress("fly" if stage == "compare" else stage, done, total),
+    )
+    return found
+
+
+def fly_all(
+    missions: Sequence[Mission],
+    seeds: Sequence[int] | np.ndarray,
+    *,
+    chances: Mapping[str, np.ndarray] | None = None,
+    allow_code: Iterable[str | Path] = (),
+    threads: int | None = None,
+    lanes: bool | None = None,
+    should_stop: Stop = lambda: False,
+    progress: Progress = lambda stage, done, total: None,
+) -> list[RunTable]:
+    """Fly every mission with every seed; see `fly_seeds`.
+
+    Args:
+        missions: without sweeps.
+        seeds: (n,) the same for all.
+        chances: of distributions, for each seed.
+        allow_code: folders from which laws may be imported.
+        threads: how many at once.
+        lanes: whether eight missions share a register.
+        should_stop: asked every few milliseconds.
+        progress: called with "compile" or "compare", how much is done, and how much there is.
+
+    Returns:
+        For each mission its runs, equally many for all: of the first seeds, as far as it came.
+
+    Raises:
+        InputError: a mission that cannot be flown.
+    """
+    if not len(seeds):
+        return [tabulate(mission, []) for mission in missions]
+    known, threads = catalog(allow_code), threads or num_processors()
+    given = [{key: float(values[k]) for key, values in (chances or {}).items()} for k in range(len(seeds))]
+    makers = [_Maker(mission, known) for mission in missions]
+    first = [maker.make(int(seeds[0]), given[0]) for maker in makers]  # what is wrong is told before any flies
     if lanes is None:
-        lanes = first.num_ticks * len(first.vehicles) * len(seeds) >= LANES_FROM
-    found: list[Numbers] = []
-    portion = (WIDTH if lanes else 4) * threads
-    progress("fly", 0, len(seeds))
-    for start in range(0, len(seeds), portion):
-        some = range(start, min(start + portion, len(seeds)))
-        pairs = [_drawn_plan(mission, int(seeds[k]), given[k], known) for k in some]
-        plans = [plan for plan, _ in pairs]
-        if lanes:
-            flown = _fly_together(plans, threads, should_stop)
-        else:
-            flown = fly_batch(plans, threads, should_stop=should_stop)
-        if should_stop():
-            break  # what a stopped mission leaves is no number of a whole one
-        found += [_numbers(one, told) for one, (_, told) in zip(flown, pairs, strict=True)]
-        progress("fly", len(found), len(seeds))
-    return tabulate(mission, found)
+        lanes = sum(one.plan.num_ticks * len(one.plan.vehicles) for one in first) * len(seeds) >= LANES_FROM
+    _warm_up([one.plan for one in first], lanes, progress)
+    portion = PORTION if lanes else max(1, math.ceil(2 * threads / len(missions)))
+    starts = range(0, len(seeds), portion)
+    found: list[list[RunTable]] = [[] for _ in missions]
+    done, total = 0, len(missions) * len(seeds)
+    progress("compare", 0, total)
+    with ThreadPoolExecutor(threads) as pool:
 
+        def begun() -> Iterator[tuple[int, "_Portion"]]:
+            for start in starts:
+                for k, maker in enumerate(makers):
+                    some = range(start, min(start + portion, len(seeds)))
+                    made = [maker.make(int(seeds[j]), given[j], lanes) for j in some]
+                    yield k, _Portion(maker, made, lanes, pool, should_stop)
 
-def _drawn_plan(
-    mission: Mission, seed: int, chances: Mapping[str, float], known: Catalog
-) -> tuple[Plan, dict[str, object]]:
-    drawn, told = draw_told(mission, seed, chances)
-    return replace(make_plan(drawn, known).plan, log_period=0.0), told
-
-
-def _numbers(flown: Flown, drawn: Mapping[str, object]) -> Numbers:
-    if (trouble := flown.trouble) is not None:
-        return Numbers(flown.plan.seed, drawn, Metrics(), failure_of(trouble), trouble.time)
-    return Numbers(flown.plan.seed, drawn, metrics_of(flown), "", math.nan)
+        for k, flying in _ahead(begun(), should_stop):
+            runs = flying.wait()
+            if any(run.flown.stopped for run in runs):
+                break  # what a stopped mission leaves is no number of a whole one
+            found[k].append(tabulate(missions[k], runs))
+            done += len(runs)
+            progress("compare", done, total)
+    tables = [stack(parts) if parts else tabulate(m, []) for m, parts in zip(missions, found, strict=True)]
+    return [table.first(min(map(len, tables))) for table in tables]
 
 
 def num_processors() -> int:
@@ -166,56 +156,104 @@ def num_processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _warm_up(plans: Sequence[Plan], progress: Progress) -> None:
+class _Made(NamedTuple):
+    """A mission ready to fly; its tables are shared with others."""
+
+    plan: Plan
+    tables: Tables
+    drawn: Mapping[str, Any]
+
+
+class _Maker:
+    """Plans one mission for many seeds."""
+
+    def __init__(self, mission: Mission, known: Catalog) -> None:
+        self._drawer, self._known, self._memo = Drawer(mission), known, Memo()
+
+    def make(self, seed: int, chances: Mapping[str, float], lanes: bool = False) -> _Made:
+        mission, drawn = self._drawer.draw(seed, chances)
+        plan = replace(make_plan(mission, self._known, self._memo).plan, log_period=0.0)
+        return _Made(plan, make_tables(plan, lanes, memo=self._memo), drawn)
+
+    def alone(self, made: _Made) -> _Made:
+        """The same mission, with tables for the engine that flies one."""
+        return made._replace(tables=make_tables(made.plan, memo=self._memo))
+
+
+class _Portion:
+    """Missions that fly while others are planned."""
+
+    def __init__(
+        self, maker: _Maker, made: Sequence[_Made], lanes: bool, pool: ThreadPoolExecutor, should_stop: Stop
+    ) -> None:
+        self._made = made
+        self._jobs: list[tuple[Sequence[int], Future[list[Flown]]]] = []
+        for places in _groups(made) if lanes else [[k] for k in range(len(made))]:
+            some = [made[k] for k in places]
+            if lanes and len(some) > FEW:
+                self._jobs.append((places, pool.submit(_fly_in_lanes, some, should_stop)))
+                continue
+            for k, one in zip(places, some, strict=True):
+                alone = maker.alone(one) if lanes else one
+                self._jobs.append(([k], pool.submit(_fly_alone, alone, should_stop)))
+
+    def wait(self) -> list[Run]:
+        """The missions after their flight, in order."""
+        flown: dict[int, Flown] = {}
+        for places, job in self._jobs:
+            flown |= zip(places, job.result(), strict=True)
+        return [Run(one.drawn, flown[k]) for k, one in enumerate(self._made)]
+
+
+def _groups(made: Sequence[_Made]) -> Iterator[list[int]]:
+    """Places of missions that can share lanes; those that last equally long stand together."""
+    alike: dict[Any, list[int]] = {}
+    for k, one in enumerate(made):
+        alike.setdefault(shape_of(one.tables), []).append(k)
+    for places in alike.values():
+        places.sort(key=lambda k: made[k].plan.num_ticks)
+        yield from (places[start : start + WIDTH] for start in range(0, len(places), WIDTH))
+
+
+def _ahead(portions: Iterator[tuple[int, _Portion]], should_stop: Stop) -> Iterator[tuple[int, _Portion]]:
+    """Portions in order, the next one begun before one is given."""
+    waiting: deque[tuple[int, _Portion]] = deque()
+    for portion in portions:
+        waiting.append(portion)
+        if len(waiting) > 1:
+            yield waiting.popleft()
+        if should_stop():
+            break
+    yield from waiting
+
+
+_rooms = threading.local()  # of each thread, the tables that it flew last
+
+
+def _fly_alone(made: _Made, should_stop: Stop) -> list[Flown]:
+    return [fly_alone(made.plan, own(made.tables), should_stop)]
+
+
+def _fly_in_lanes(made: Sequence[_Made], should_stop: Stop) -> list[Flown]:
+    _rooms.tables = joined = join([one.tables for one in made], getattr(_rooms, "tables", None))
+
+    def leave(lane: int) -> Tables:
+        numbers = {name: getattr(joined, name)[:, lane].copy() for name in MEASURED}
+        return made[lane].tables._replace(**numbers)
+
+    return fly_joined([one.plan for one in made], joined, leave, should_stop)
+
+
+def _warm_up(plans: Sequence[Plan], lanes: bool, progress: Progress) -> None:
     """Compile what all plans need, shown as one piece of work."""
+    pieces = len(plans) + lanes
     for number, plan in enumerate(plans):
 
         def note(done: int, total: int, before: int = number) -> None:
-            progress("compile", before * total + done, len(plans) * total)
+            progress("compile", before * total + done, pieces * total)
 
         warm_up(plan, note)
-
-
-def _plan(mission: Mission, seed: int, known: Catalog) -> Plan:
-    """The plan of a drawn mission, without a log."""
-    return replace(make_plan(draw(mission, seed), known).plan, log_period=0.0)
-
-
-def _plans(mission: Mission, seeds: Sequence[int], known: Catalog) -> list[Plan]:
-    if mission.is_fixed:
-        first = _plan(mission, seeds[0], known)
-        return [replace(first, seed=seed) for seed in seeds]
-    return [_plan(mission, seed, known) for seed in seeds]
-
-
-def _fly_portion(
-    missions: Sequence[Mission],
-    seeds: Sequence[int],
-    known: Catalog,
-    threads: int,
-    with_lanes: bool,
-    should_stop: Callable[[], bool],
-) -> list[list[Run]]:
-    plans = [_plans(mission, seeds, known) for mission in missions]
-    if with_lanes:
-        flown = [_fly_together(some, threads, should_stop) for some in plans]
-    else:
-        everything = fly_batch([plan for some in plans for plan in some], threads, should_stop=should_stop)
-        flown = [everything[k * len(seeds) : (k + 1) * len(seeds)] for k in range(len(missions))]
-    return [[_run(mission, one) for one in some] for mission, some in zip(missions, flown, strict=True)]
-
-
-def _fly_together(plans: Sequence[Plan], threads: int, should_stop: Callable[[], bool]) -> list[Flown]:
-    """In lanes where the missions can share them; a drawn duration or path may be a reason why not."""
-    try:
-        return fly_batch(plans, threads, lanes=True, should_stop=should_stop)
-    except ValueError:
-        return fly_batch(plans, threads, should_stop=should_stop)
-
-
-def _run(mission: Mission, flown: Flown) -> Run:
-    if flown.trouble is not None:
-        return Run(Metrics(), met=False if mission.require else None, failure=failure_of(flown.trouble))
-    metrics = metrics_of(flown)
-    verdicts = judge(mission.require, metrics)
-    return Run(metrics, met=all(verdict.met for verdict in verdicts) if verdicts else None)
+    if lanes:
+        for plan in plans:
+            advance(join([make_tables(replace(plan, duration=plan.tick), lanes=True)]), 0, 0)
+        progress("compile", pieces, pieces)

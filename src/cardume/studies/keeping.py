@@ -15,7 +15,7 @@ from typing import Any
 from cardume.missions.results import Destination, choose_destination, write_atomically
 from cardume.missions.summary import read_kept, to_json
 from cardume.simulation.flight import METRICS
-from cardume.studies.comparing import Comparison, value_of
+from cardume.studies.comparing import Comparison
 from cardume.studies.statistics import Estimate
 
 FORMAT_VERSION = 1
@@ -93,12 +93,13 @@ def to_csv(comparison: Comparison) -> str:
         comparison: what was flown.
     """
     names = [*METRICS, *(metric for metric in comparison.metrics if "." in metric)]
-    rows = [
-        [arm.label, seed, "" if run.met is None else int(run.met), run.failure or ""]
-        + ["" if math.isnan(value) else repr(value) for value in (value_of(run, name) for name in names)]
-        for arm, runs in zip(comparison.arms, comparison.runs, strict=True)
-        for seed, run in zip(comparison.seeds, runs, strict=True)
-    ]
+    rows = []
+    values = [comparison.values(name) for name in names]
+    for k, (arm, runs) in enumerate(zip(comparison.arms, comparison.runs, strict=True)):
+        for j, seed in enumerate(comparison.seeds):
+            met = int(runs.met[j].all()) if runs.requirements else ""
+            numbers = ["" if math.isnan(of[k, j]) else repr(float(of[k, j])) for of in values]
+            rows.append([arm.label, seed, met, runs.failure[j], *numbers])
     kept = [k for k in range(len(names)) if any(row[4 + k] for row in rows)]
     units = [METRICS[name.rpartition(".")[2]].unit for name in names]
     titles = [f"{names[k]} [{units[k]}]" if units[k] else names[k] for k in kept]
