@@ -137,9 +137,13 @@ def _rows(plan: Plan, vehicles: Sequence[VehiclePlan], memo: Memo) -> dict[str, 
     numbers, features = memo.recall("orders", orders, lambda: _orders(vehicles))
     return {
         "vehicles": table("vehicle row", [((v.state, v.place), None) for v in vehicles], _vehicle_row),
-        "minds": table("mind row", [((v.setup, v.datasheet, v.orders, v.path), _estimate(v)) for v in vehicles], _mind_row),
+        "minds": table(
+            "mind row", [((v.setup, v.datasheet, v.orders, v.path), _estimate(v)) for v in vehicles], _mind_row
+        ),
         "others": memo.recall("others", (known,), lambda: np.tile(known, len(vehicles))),
-        "timings": table("timing row", [(_sensors_of(v), tick) for v in vehicles], lambda v: _timing_row(v, tick, memo)),
+        "timings": table(
+            "timing row", [(_sensors_of(v), tick) for v in vehicles], lambda v: _timing_row(v, tick, memo)
+        ),
         "orders": numbers,
         "features": features,
         "scores": table("score row", [((v.safety,), None) for v in vehicles], lambda v: _row(SCORES, v.safety)),
