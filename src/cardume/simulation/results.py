@@ -216,11 +216,11 @@ def percentile(bins: np.ndarray, share: float) -> np.ndarray:
     """The error that a share of the counted ticks stays below, from a histogram; a straight line within a bin.
 
     Args:
-        bins: [-] (..., BINS) counts; bin k holds errors e [m] with BINS e / (1 + e) in [k, k + 1).
+        bins: [-] (N, BINS) counts, or with more axes before; bin k holds errors e [m] with BINS e / (1 + e) in [k, k + 1).
         share: [-] between 0 and 1.
 
     Returns:
-        (...) the errors [m]; NaN where nothing was counted.
+        (N,) the errors [m]; NaN where nothing was counted.
     """
     total = bins.sum(axis=-1)
     above = np.cumsum(bins, axis=-1)  # at the upper end of each bin
