@@ -216,7 +216,8 @@ def percentile(bins: np.ndarray, share: float) -> np.ndarray:
     """The error that a share of the counted ticks stays below, from a histogram; a straight line within a bin.
 
     Args:
-        bins: [-] (N, BINS) counts, or with more axes before; bin k holds errors e [m] with BINS e / (1 + e) in [k, k + 1).
+        bins: [-] (N, BINS) counts, or with more axes before; bin k holds errors e [m] with BINS e / (1 + e) in
+            [k, k + 1).
         share: [-] between 0 and 1.
 
     Returns:
