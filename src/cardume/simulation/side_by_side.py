@@ -25,6 +25,8 @@ def join(tables: Sequence[Tables], into: Tables | None = None) -> Tables:
         ValueError: missions that differ in what all lanes share, or in the size of a table.
     """
     full = [*tables, *[tables[-1]] * (WIDTH - len(tables))]
+    noisy = max(t.whole.has_weather for t in full)  # a drawn variation of zero does not keep missions apart
+    full = [t._replace(whole=t.whole._replace(has_weather=noisy)) for t in full]
     joined = []
     for name in Tables._fields:
         parts = [getattr(t, name) for t in full]
@@ -82,7 +84,8 @@ def shape_of(tables: Tables) -> Hashable:
     Args:
         tables: of one mission, made for lanes.
     """
-    return tuple(_common(name, part) for name, part in zip(Tables._fields, tables, strict=True))
+    alike = tables._replace(whole=tables.whole._replace(has_weather=0))
+    return tuple(_common(name, part) for name, part in zip(Tables._fields, alike, strict=True))
 
 
 def _common(name: str, part: Any) -> Hashable:

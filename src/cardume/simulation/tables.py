@@ -98,7 +98,7 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: M
         int(any("bathymetry" in v.laws for v in vehicles)),
         int(any(v.orders.has_phases for v in vehicles)),
         int(plan.is_watched),
-        int(any(v.laws["current"].law.asks_for(Noise) for v in vehicles if "current" in v.laws)),
+        int(any(_noise_pairs(v.laws["current"], memo) for v in vehicles if "current" in v.laws)),
     )
     blank = memo.recall("blank", (), lambda: _blank(whole, records, room), (whole, records, room))
     tables = blank._replace(
@@ -261,20 +261,21 @@ def _timing_row(vehicle: VehiclePlan, tick: float, memo: Memo) -> np.ndarray:
 def _timing(choice: Choice | None, tick: float, memo: Memo) -> Timing:
     if choice is None:
         return Timing()
-    law, latency = choice.law, float(round(choice.value("latency") / tick))
+    latency = float(round(choice.value("latency") / tick))
     period = float(max(1, round(choice.value("period") / tick)))
-    read = memo.recall("noise read", (law,), lambda: fields_read(law.function, Noise))
-    return Timing(latency, 0.0, period, latency, float(_noise_pairs(choice, read)))
+    return Timing(latency, 0.0, period, latency, float(_noise_pairs(choice, memo)))
 
 
-def _noise_pairs(choice: Choice, read: set[str]) -> int:
-    """How many pairs of random numbers a sensor's law reads; none where it is told that all its noise is zero.
+def _noise_pairs(choice: Choice, memo: Memo) -> int:
+    """How many pairs of random numbers a law reads in a tick; none where it is told that all its noise is zero.
 
     Of a user's law it is never known that its noise is zero.
     """
     sizes = [p.name for p in choice.law.parameters if any(part in p.name for part in CHANCES)]
     if choice.law.is_builtin and sizes and not any(choice.value(name) for name in sizes):
         return 0
+    law = choice.law
+    read = memo.recall("noise read", (law,), lambda: fields_read(law.function, Noise))
     return 2 if read & {"c", "d"} else 1 if read else 0
 
 
