@@ -9,6 +9,7 @@ them is a new name.
 """
 
 import hashlib
+import inspect
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -18,7 +19,10 @@ from numba import config, njit
 from numba.extending import overload
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
-INLINED = {"forceinline": True}  # for what is a line or two; large records go by reference, see reference.py
+INLINED = {"forceinline": True}
+# Numbers that a call passes by value, above which it is inlined: in lanes each takes two registers or 64 bytes of
+# stack, and half of `decide` was moving them. Tables and what goes by reference (reference.py) cost nothing.
+MOST_PASSED = 6
 COMPUTE_LAYERS = (
     "compiler",
     "maths",
@@ -34,6 +38,14 @@ F = TypeVar("F", bound=Callable[..., Any])
 _registered: set[Callable[..., Any]] = set()
 
 
+def _numbers_in(kind: Any) -> int:
+    """How many numbers a record holds, those of records in it counted one by one, tables not."""
+    if not hasattr(kind, "_fields"):
+        return 0
+    fields = [kind.__annotations__.get(field) for field in kind._fields]
+    return sum(1 if field is float else _numbers_in(field) for field in fields)
+
+
 def compiled(function: F) -> F:
     """Let compiled code call this function; return it unchanged.
 
@@ -44,8 +56,11 @@ def compiled(function: F) -> F:
         The same function.
     """
 
+    passed = sum(_numbers_in(p.annotation) for p in inspect.signature(function).parameters.values())
+    options = OPTIONS | (INLINED if passed > MOST_PASSED else {})
+
     # Numba compiles `function` itself, once for each number type that it meets.
-    @overload(function, strict=False, jit_options=OPTIONS)
+    @overload(function, strict=False, jit_options=options)
     def specialized(*arguments: Any) -> Callable[..., Any]:
         return function
 
