@@ -149,14 +149,15 @@ class ShaftReading(NamedTuple):
 
 
 class Fix(NamedTuple):
-    """A measured position, some time after it was valid."""
+    """A measured position, some time after it was valid; or only the distance from where it was measured."""
 
-    north: float = NOTHING  # [m]
+    north: float = NOTHING  # [m] of the vehicle; where `range` is a number, of the one who measured it
     east: float = NOTHING  # [m]
     age: float = NOTHING  # [s] since it was valid
     north_variance: float = NOTHING  # [m^2] NaN: not told
     covariance: float = NOTHING  # [m^2] of north with east
     east_variance: float = NOTHING  # [m^2]
+    range: float = NOTHING  # [m] level; NaN: north and east are the vehicle's
 
 
 class Motion(NamedTuple):
@@ -303,9 +304,9 @@ class Report(NamedTuple):
 
 
 class Sighting(NamedTuple):
-    """What a report says of one other vehicle: where it was, and how far along."""
+    """What a report says of one other vehicle: where it was, or how far away, and how far along."""
 
-    north: float = NOTHING  # [m]
+    north: float = NOTHING  # [m] of the vehicle; where `range` is a number, of the one who saw it
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when that was; NaN: no fix
     coordination_state: float = NOTHING  # [m]
@@ -315,3 +316,5 @@ class Sighting(NamedTuple):
     north_variance: float = NOTHING  # [m^2] of where it was
     covariance: float = NOTHING  # [m^2] of north with east
     east_variance: float = NOTHING  # [m^2]
+    range: float = NOTHING  # [m] slant; NaN: north and east are the vehicle's
+    depth: float = NOTHING  # [m] of the one who saw it

@@ -160,14 +160,16 @@ class Outlook(NamedTuple):
 
 
 class LastSeen(NamedTuple):
-    """Where another vehicle was seen."""
+    """Where another vehicle was seen, or from where how far away."""
 
-    north: float = NOTHING  # [m]
+    north: float = NOTHING  # [m] of the vehicle; where `range` is a number, of the one who saw it
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when
     north_variance: float = NOTHING  # [m^2]
     covariance: float = NOTHING  # [m^2] of north with east
     east_variance: float = NOTHING  # [m^2]
+    range: float = NOTHING  # [m] slant; NaN: north and east are the vehicle's
+    depth: float = NOTHING  # [m] of the one who saw it
 
 
 class Told(NamedTuple):

@@ -1,7 +1,7 @@
 """Where am I, how fast, and where on my path."""
 
 from cardume.compiler import Rows, compiled, load, negate, some, where
-from cardume.maths import clip, to_ned, to_path
+from cardume.maths import clip, sqrt, to_ned, to_path
 from cardume.onboard.estimation.current import observe
 from cardume.onboard.estimation.position import estimate_position
 from cardume.onboard.estimation.speed.base import read_shaft
@@ -79,11 +79,13 @@ def navigate(mind: Mind, measured: Measured, heard: Rows, motion: Motion, time: 
     """The believed position: GNSS where there is a reading, else the newest fix that was heard, else reckoning."""
     by_gnss = measured.gnss_north == measured.gnss_north
     if some(get_setup(mind.own, 0).takes_old_fixes > 0.5):
-        fix = unused_fix(mind, heard, by_gnss, time)
+        fix = unused_fix(mind, heard, by_gnss, measured.depth, time)
     else:
         fix = newest_fix(mind, heard, time)
     variance = get_datasheet(mind.own, 0).gnss * get_datasheet(mind.own, 0).gnss
-    by_satellite = Fix(measured.gnss_north, measured.gnss_east, measured.gnss_age, variance, 0.0 * variance, variance)
+    by_satellite = Fix(
+        measured.gnss_north, measured.gnss_east, measured.gnss_age, variance, 0.0 * variance, variance, NOTHING
+    )
     chosen = where(by_gnss, by_satellite, fix)
     position = estimate_position(mind.book, 0, chosen, motion)
     before = get_whereabouts(mind.own, 0).time_of_fix
@@ -110,20 +112,21 @@ def newest_fix(mind: Mind, heard: Rows, time: float) -> Fix:
         message = message_from(heard, mind.size, source)
         if some(is_fresh(message)):
             seen = sighting_in(message, mind.me)
-            newer = is_fresh(message) & (seen.time_of_fix > valid + SAME)
-            fix = where(newer, _fix_told(seen, time), fix)
+            newer = is_fresh(message) & (seen.time_of_fix > valid + SAME) & negate(seen.range == seen.range)
+            fix = where(newer, _fix_told(seen, 0.0 * valid, time), fix)
             valid = where(newer, seen.time_of_fix, valid)
     return fix
 
 
 @compiled
-def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, time: float) -> Fix:
-    """A fix of this vehicle that somebody told and that was not used yet; when there are several, one in each tick.
+def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, depth: float, time: float) -> Fix:
+    """A fix of this vehicle, or only a range, that somebody told and that was not used yet; of several one in a tick.
 
     Args:
         mind: of the vehicle.
         heard: (sources, message) its inbox, with what each said last.
         by_gnss: [-] whether a GNSS reading comes first in this tick.
+        depth: [m] of this vehicle, as measured.
         time: [s]
     """
     fix = _no_fix(get_whereabouts(mind.own, 0).time_of_fix)
@@ -134,20 +137,31 @@ def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, time: float) -> Fix:
         free = negate(by_gnss | (fix.north == fix.north))
         is_unused = free & (seen.time_of_fix > used + SAME)
         if some(is_unused):
-            fix = where(is_unused, _fix_told(seen, time), fix)
+            fix = where(is_unused, _fix_told(seen, depth, time), fix)
             put_told(mind.others, sender, Told(where(is_unused, seen.time_of_fix, used)))
     return fix
 
 
 @compiled
-def _fix_told(seen: Sighting, time: float) -> Fix:
-    return Fix(seen.north, seen.east, time - seen.time_of_fix, seen.north_variance, seen.covariance, seen.east_variance)
+def _fix_told(seen: Sighting, depth: float, time: float) -> Fix:
+    """A sighting as a fix; of a slant range the level part, at least a hundredth of it."""
+    below, slant = where(seen.depth == seen.depth, depth - seen.depth, depth), seen.range * seen.range
+    level = slant - where(depth == depth, below * below, 0.0)
+    return Fix(
+        seen.north,
+        seen.east,
+        time - seen.time_of_fix,
+        seen.north_variance,
+        seen.covariance,
+        seen.east_variance,
+        sqrt(where(level < 1e-4 * slant, 1e-4 * slant, level)),
+    )
 
 
 @compiled
 def _no_fix(like: float) -> Fix:
     nothing = NOTHING * like
-    return Fix(nothing, nothing, nothing, nothing, nothing, nothing)
+    return Fix(nothing, nothing, nothing, nothing, nothing, nothing, nothing)
 
 
 @compiled

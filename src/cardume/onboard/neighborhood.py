@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from cardume.compiler import Rows, at, compiled, load, some, where
+from cardume.compiler import Rows, at, compiled, load, negate, some, where
 from cardume.maths import to_cartesian, to_ned_3d
 from cardume.maths.blocks import Spread
 from cardume.onboard.coordination import correct_speed
@@ -132,8 +132,52 @@ def look_around(
             spread = spread_of_sighting(mind, position, north, east, down)
             north = north + position.north - age * (motion.north + motion.current_north)
             east = east + position.east - age * (motion.east + motion.current_east)
-            seen = LastSeen(north, east, time - age, spread.nn, spread.ne, spread.ee)
-            sight(mind, vehicle, is_new, seen, error)
+            nothing = NOTHING * age
+            seen = LastSeen(north, east, time - age, spread.nn, spread.ne, spread.ee, nothing, nothing)
+            has_bearing = is_new & (load(reading, 1) == load(reading, 1))
+            sight(mind, vehicle, has_bearing, seen, error)
+            is_range = is_new & negate(has_bearing)
+            if some(is_range):
+                ranged = range_from(mind, measured, position, motion, load(reading, 0), age, time)
+                put_last_seen(mind.others, vehicle, where(is_range, ranged, get_last_seen(mind.others, vehicle)))
+
+
+@compiled
+def range_from(
+    mind: Mind,
+    measured: Measured,
+    position: NavigationEstimate,
+    motion: Motion,
+    distance: float,
+    age: float,
+    time: float,
+) -> LastSeen:
+    """What is left of a reading without a bearing: from where how far away a vehicle was.
+
+    Its variances are those of the own position and of the range together.
+
+    Args:
+        mind: of the one who measured.
+        measured: its depth.
+        position: its own.
+        motion: its own.
+        distance: [m] slant range.
+        age: [s] of the reading.
+        time: [s]
+    """
+    told = get_datasheet(mind.own, 0)
+    own, known = told.gnss * told.gnss, position.north_variance == position.north_variance
+    more = told.range * told.range
+    return LastSeen(
+        position.north - age * (motion.north + motion.current_north),
+        position.east - age * (motion.east + motion.current_east),
+        time - age,
+        where(known, position.north_variance, own) + more,
+        where(known, position.covariance, 0.0),
+        where(known, position.east_variance, own) + more,
+        distance,
+        measured.depth,
+    )
 
 
 @compiled

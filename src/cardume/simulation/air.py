@@ -106,6 +106,8 @@ def speak(fleet: Fleet, sender: int, said: Said) -> None:
                 where_seen.north_variance,
                 where_seen.covariance,
                 where_seen.east_variance,
+                where_seen.range,
+                where_seen.depth,
             )
             put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
         note_sent(fleet, sender, sends)

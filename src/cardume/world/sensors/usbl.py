@@ -1,8 +1,8 @@
 """Ultra-short baseline: range and two angles of a transponder, as the head hears it."""
 
-from cardume.compiler import where
-from cardume.laws import Meters, NotNegative, Positive, Radians
-from cardume.maths import to_spherical
+from cardume.compiler import some, where
+from cardume.laws import Meters, NotNegative, Positive, Probability, Radians
+from cardume.maths import exp, to_spherical
 from cardume.signals import NOTHING, Baseline, Noise, UsblReading
 from cardume.world.sensors.base import usbl_sensor
 
@@ -17,6 +17,7 @@ def usbl(
     angle_sigma: NotNegative[Radians] = 1.0 * DEGREE,
     misalignment: Radians = 0.0,
     max_range: Positive[Meters] = 1000.0,
+    bearing_loss: Probability = 0.0,
 ) -> UsblReading:
     """True range, azimuth and elevation plus white noise; the head may be mounted with a twist.
 
@@ -36,18 +37,25 @@ def usbl(
         misalignment: [rad] m, how far the head is turned to starboard about the vertical; what it says is believed to
             be in body axes, so m > 0 places targets too far to port.
         max_range: [m] beyond which nothing is heard: all three are NaN.
+        bearing_loss: [-] share of readings that are a range only, azimuth and elevation NaN; decided by n_4, of which
+            the normal probability is taken to be 1 / (1 + exp(-1.5976 n - 0.07056 n^3)), right to 2e-4.
 
     Returns:
         Range [m], never negative, azimuth [rad] positive to starboard and elevation [rad] positive down, in the axes of
         the head; angles are not wrapped.  A target within the head itself has azimuth and elevation 0.
 
-    Source: white noise on range, bearing and elevation as in LSTS DUNE, Simulators/USBL; ours are the defaults.
+    Source: white noise on range, bearing and elevation as in LSTS DUNE, Simulators/USBL; ours are the defaults.  That
+    a reading may be a range only is seen in transcripts of EvoLogics S2C heads, where integrity is below 100.
     """
     distance, azimuth, elevation = to_spherical(baseline.ahead, baseline.starboard, baseline.down)
     measured = distance + range_sigma * noise.a
     heard = distance <= max_range
+    by_angle = heard
+    if some(bearing_loss > 0.0):
+        share = 1.0 / (1.0 + exp(-noise.d * (1.5976 + 0.07056 * noise.d * noise.d)))
+        by_angle = heard & (share >= bearing_loss)
     return UsblReading(
         where(heard, where(measured > 0.0, measured, 0.0), NOTHING),
-        where(heard, azimuth - misalignment + angle_sigma * noise.b, NOTHING),
-        where(heard, elevation + angle_sigma * noise.c, NOTHING),
+        where(by_angle, azimuth - misalignment + angle_sigma * noise.b, NOTHING),
+        where(by_angle, elevation + angle_sigma * noise.c, NOTHING),
     )

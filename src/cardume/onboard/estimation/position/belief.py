@@ -14,7 +14,7 @@ covariance is kept as blocks of two by two.
 from typing import NamedTuple
 
 from cardume.compiler import compiled, some, where
-from cardume.maths import exp
+from cardume.maths import exp, hypot
 from cardume.maths.blocks import (
     UNIT,
     Block,
@@ -32,6 +32,7 @@ from cardume.signals import Fix
 CALIBRATION_HOLDS = 3600.0  # [s] in which calibration is thought to drift by as much as it was uncertain at first
 UNKNOWN = 1e6  # [m^2] variance of a position of which nothing is known
 EXACT = 1e-6  # [m^2] no fix is better than a millimeter
+NEAREST = 1e-3  # [m] a source nearer than this has no direction
 NEARLY_NONE = 0.02  # of f T: below it the closed forms lose digits
 
 
@@ -113,6 +114,14 @@ class Doubts(NamedTuple):
     fix: float  # [m^2] variance of a fix that does not tell its own
     gate: float  # [-] largest believable squared innovation over its variance
     patience: float  # [-] fixes in a row that are not believed before the filter gives up what it believed itself
+
+
+class Innovation(NamedTuple):
+    """How far a fix is from what was believed of it, and the inverse of the covariance of that."""
+
+    north: float  # [m]
+    east: float  # [m]
+    weight: Block  # [1/m^2]
 
 
 @compiled
@@ -255,8 +264,8 @@ def corrected(belief: Belief, fix: Fix, doubts: Doubts) -> Belief:
     lost = was.rejected >= doubts.patience
     pp = plus(before.pp, where(lost, UNKNOWN, 0.0), UNIT)
     cc = plus(before.cc, where(lost, doubts.current, 0.0), UNIT)
-    north, east = fix.north - mean.north, fix.east - mean.east
-    inverse = inverted(plus(pp, 1.0, _noise_of(fix, doubts)))
+    seen = _seen(fix, mean, pp, doubts)
+    north, east, inverse = seen.north, seen.east, seen.weight
     odd = north * (inverse.nn * north + inverse.ne * east) + east * (inverse.en * north + inverse.ee * east)
     wide = 1.0 + was.rejected
     believed = lost | (odd <= doubts.gate * wide * wide)
@@ -280,6 +289,43 @@ def corrected(belief: Belief, fix: Fix, doubts: Doubts) -> Belief:
     )
     moment = Moment(was.tick, was.way_north, was.way_east, where(believed, 0.0, was.rejected + 1.0))
     return Belief(moment, where(believed, after, mean), where(believed, _joined(blocks), belief.covariance))
+
+
+@compiled
+def _seen(fix: Fix, mean: Mean, pp: Block, doubts: Doubts) -> Innovation:
+    """How far a fix is from what was believed, and the inverse of the covariance of that."""
+    noise = _noise_of(fix, doubts)
+    place = Innovation(fix.north - mean.north, fix.east - mean.east, inverted(plus(pp, 1.0, noise)))
+    is_range = fix.range == fix.range
+    if some(is_range):
+        ranged = _ranged(fix, mean, pp, noise)
+        place = Innovation(
+            where(is_range, ranged.north, place.north),
+            where(is_range, ranged.east, place.east),
+            where(is_range, ranged.weight, place.weight),
+        )
+    return place
+
+
+@compiled
+def _ranged(fix: Fix, mean: Mean, pp: Block, noise: Block) -> Innovation:
+    """The same of a range: all of it lies along the line of sight l from its source, and so does its weight l l' / S.
+
+    h(p) = |p - p_s| has the slope l = (p - p_s) / h, and at second order a mean m / (2 h) greater and a variance
+    m^2 / (2 h^2) greater, m the variance of p across l.
+
+    Source: the second-order extended Kalman filter, whose sums have one term here (derived).
+    """
+    north, east = mean.north - fix.north, mean.east - fix.east
+    distance = hypot(north, east)
+    is_apart = distance > NEAREST
+    h = where(is_apart, distance, NEAREST)
+    n, e = where(is_apart, north / h, 1.0), where(is_apart, east / h, 0.0)
+    across = pp.nn * e * e - 2.0 * pp.ne * n * e + pp.ee * n * n
+    more = 0.5 * across / h
+    along = n * n * (pp.nn + noise.nn) + 2.0 * n * e * (pp.ne + noise.ne) + e * e * (pp.ee + noise.ee)
+    odd, weight = fix.range - distance - more, 1.0 / (along + 2.0 * more * more)
+    return Innovation(odd * n, odd * e, Block(weight * n * n, weight * n * e, weight * n * e, weight * e * e))
 
 
 @compiled
