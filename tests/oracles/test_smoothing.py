@@ -78,16 +78,16 @@ def test_the_smoother_solves_all_equations_at_once(seed):
 def test_later_fixes_make_it_better():
     """Over many records the smoother errs less than with a lag, that less than the filter; as much as it believes."""
     wrong = {0: [], 2: [], None: []}
-    nees = []
+    squares = []
     for seed in range(25):
         times, way, fixes, doubt, truth = record(seed)
         for lag, errors in wrong.items():
             track = smooth(times, way, fixes, start=np.zeros(2), doubt=doubt, lag=lag)
             errors.append(np.mean((track.means - truth)[:, :2] ** 2))
         apart = track.means - truth
-        nees.append(np.mean(np.einsum("ti,tij,tj->t", apart, np.linalg.inv(track.covariances), apart)) / 4.0)
+        squares.append(np.mean(np.einsum("ti,tij,tj->t", apart, np.linalg.inv(track.covariances), apart)) / 4.0)
     assert np.mean(wrong[None]) < np.mean(wrong[2]) < np.mean(wrong[0])
-    assert np.mean(nees) == pytest.approx(1.0, abs=3.5 * np.std(nees) / math.sqrt(len(nees)))
+    assert np.mean(squares) == pytest.approx(1.0, abs=3.5 * np.std(squares) / math.sqrt(len(squares)))
 
 
 def test_a_record_out_of_order_is_refused():
