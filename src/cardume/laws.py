@@ -241,7 +241,7 @@ class Law:
         values = {p.name: named.pop(p.name, p.default) for p in self._computed_from()}
         given = inspect.signature(self.function).bind_partial(*arguments, **named).arguments
         if self._constants_name not in given:
-            named[self._constants_name] = self._constants_of(dt=given["dt"], **values)
+            named[self._constants_name] = self._constants_of(dt=given.get("dt", math.nan), **values)
         return self.function(*arguments, **named)
 
     def __repr__(self) -> str:

@@ -101,6 +101,9 @@ class Link(NamedTuple):
     range: float  # [m]
     draw_1: float  # [-] uniform in (0, 1)
     draw_2: float  # [-] uniform in (0, 1)
+    time: float = 0.0  # [s] of its sending
+    payload: float = 0.0  # [-] bytes, where the channel counts them
+    sent: float = 1.0  # [-] 0: nothing was sent, in this lane; a memory stays as it is
 
 
 class Arrival(NamedTuple):
@@ -290,6 +293,21 @@ class Outbox(NamedTuple):
     state: float  # [m] own coordination state
     path_speed: float  # [m/s]
     time: float  # [s]
+    place: float = 0.0  # [-] of the vehicle among those of the fleet, by name, from 0
+    size: float = 1.0  # [-] vehicles in the fleet
+
+
+class Question(NamedTuple):
+    """Whose turn it is to speak where one vehicle asks the others."""
+
+    is_head: float  # [-] 1: it carries the USBL head, and asks
+    asked: float  # [-] 1: a question to it came in this tick
+
+
+class Forecast(NamedTuple):
+    """What the others think of a vehicle, as far as it knows."""
+
+    deviation: float  # [m] own coordination state less what they predict of it; NaN before it said anything
 
 
 class Report(NamedTuple):
@@ -301,6 +319,7 @@ class Report(NamedTuple):
     coordination_state: float = NOTHING  # [m]
     path_speed: float = NOTHING  # [m/s] rate of the coordination state
     phase: float = 4.0  # [-] of its mission, see onboard/phases.py; 4: on its path
+    asks: float = -1.0  # [-] place of the vehicle that is to answer; -1: none
 
 
 class Sighting(NamedTuple):

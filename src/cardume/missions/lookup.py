@@ -29,6 +29,7 @@ from cardume.missions.vehicle import LawChoice
 from cardume.missions.water import CurrentPoint
 from cardume.missions.wording import unknown
 from cardume.units import printable, show_text
+from cardume.world.acoustics.profiles import BURSTS, MODEMS, Profile
 
 TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
     ("current", "gridded"): (
@@ -40,6 +41,11 @@ TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
     ("current", "sheared"): (
         Field("profile", ListOf(Group(CurrentPoint), fixed=True), MISSING, None, False, "velocities by depth"),
     ),
+    ("acoustics", "modem"): (
+        Field("profile", Word(tuple(MODEMS), fixed=True), "evologics_s2c", None, False, "whose modem it is"),
+        Field("bursts", Word(tuple(BURSTS), fixed=True), "none", None, False, "how links fail; all but none are ours"),
+        Field("codec", Word(("exact", "compact"), fixed=True), "exact", None, False, "whether numbers are rounded"),
+    ),
     ("bathymetry", "gridded"): (
         Field("file", File(fixed=True), MISSING, None, False, "CF NetCDF or ESRI ASCII grid of depth or elevation"),
         Field("variable", Text(fixed=True), None, None, False, "of NetCDF, that holds the depth"),
@@ -49,13 +55,20 @@ TEXT_PARAMETERS: dict[tuple[str, str], tuple[Field, ...]] = {
 }
 """What laws take beside numbers: texts and lists, which compiled code does not see."""
 
+PRESETS: dict[tuple[str, str], dict[str, Mapping[str, Profile]]] = {
+    ("acoustics", "modem"): {"profile": MODEMS, "bursts": BURSTS},
+}
+"""Words of a law that set what its other parameters are when they are left out."""
+
 
 class Chosen:
     """The law that a section names, as the fields it brings."""
 
-    def __init__(self, kind: Laws, name: str, law: Law | None, announced: Mapping[str, float]) -> None:
+    def __init__(
+        self, kind: Laws, name: str, law: Law | None, announced: Mapping[str, float], entries: dict[str, Node]
+    ) -> None:
         self.kind, self.name = kind, name
-        self.fields = () if law is None else law_fields(law, announced)
+        self.fields = () if law is None else law_fields(law, {**announced, **preset_by(law, entries)})
 
     @property
     def keys(self) -> set[str]:
@@ -75,7 +88,7 @@ def choose_law(kind: Laws, entries: dict[str, Node], section: Node, context: Con
         name = kind.default if kind.default in {*builtin, *kind.words} else next(iter(builtin), None)
         if name is None:
             raise section.error(f"there is no law of the family {kind.family} to choose")
-        return Chosen(kind, name, builtin.get(name), announced)
+        return Chosen(kind, name, builtin.get(name), announced, entries)
     if is_varying(named):
         raise named.error(
             f"a varying law carries its parameters: write the whole section as"
@@ -83,9 +96,9 @@ def choose_law(kind: Laws, entries: dict[str, Node], section: Node, context: Con
         )
     name = named.value
     if isinstance(name, str) and ":" in name:
-        return Chosen(kind, name, _user_law(kind, name, named, context), announced)
+        return Chosen(kind, name, _user_law(kind, name, named, context), announced, entries)
     if isinstance(name, str) and (name in builtin or isinstance(kind.words.get(name), LawChoice)):
-        return Chosen(kind, name, builtin.get(name), announced)
+        return Chosen(kind, name, builtin.get(name), announced, entries)
     valid = [*builtin, *(word for word in kind.words if word not in builtin)]
     message = unknown(f"there is no {kind.family} law {named.given()}", str(name), valid)
     raise named.error(f"{message}, or your own law as module:function")
@@ -111,6 +124,21 @@ def law_fields(law: Law, announced: Mapping[str, float] | None = None) -> tuple[
         for parameter in law.parameters
     )
     return TEXT_PARAMETERS.get((law.family, law.name), ()) + numbers
+
+
+def preset_by(law: Law, entries: dict[str, Node]) -> dict[str, float]:
+    """What the words in a law's section make of its parameters that are left out.
+
+    Args:
+        law: of any family.
+        entries: the keys of its section.
+    """
+    values: dict[str, float] = {}
+    for key, presets in PRESETS.get((law.family, law.name), {}).items():
+        word = entries[key].value if key in entries else None
+        if isinstance(word, str) and word in presets:
+            values |= presets[word].values
+    return values
 
 
 def announced_by(choice: Any, node: Node, context: Context) -> Mapping[str, Mapping[str, float]]:

@@ -17,6 +17,7 @@ from cardume.missions.currents import Window, explain_coverage, read_current
 from cardume.missions.formats import read_plan
 from cardume.missions.geodesy import GeoPoint
 from cardume.missions.laying import lay_path
+from cardume.missions.medium_access import scheduled
 from cardume.missions.mission import Mission
 from cardume.missions.orders import (
     deepest,
@@ -98,8 +99,9 @@ def make_plan(mission: Mission, catalog: Catalog, memo: Memo = NO_MEMO) -> Plann
     seabed = memo.recall(
         "seabed", (mission.bathymetry, mission.origin, *paths), lambda: _seabed(mission, origin, paths)
     )
+    vehicles = tuple(planned(vehicle, path) for vehicle, path in zip(mission.vehicles, paths, strict=True))
     plan = Plan(
-        tuple(planned(vehicle, path) for vehicle, path in zip(mission.vehicles, paths, strict=True)),
+        scheduled(mission, vehicles),
         memo.recall("hears", (mission.vehicles[0].coordination,), lambda: np.asarray(mission.adjacency)),
         mission.duration,
         mission.seed,
@@ -237,7 +239,7 @@ def _vehicle(
     def choice(chosen: LawChoice) -> Choice:
         return memo.recall("law", (chosen,), lambda: _choice(chosen, catalog))
 
-    seabed = mission.bathymetry
+    seabed, heard = mission.bathymetry, vehicle.acoustics
     laws = {
         "guidance": choice(vehicle.guidance.law),
         "reference_point": choice(vehicle.guidance.reference_point),
@@ -249,7 +251,7 @@ def _vehicle(
         "messaging": choice(vehicle.messaging),
         "model": choice(vehicle.model),
         "autopilot": memo.recall("autopilot", (vehicle.model, vehicle.autopilot), lambda: _autopilot(vehicle, catalog)),
-        "acoustics": choice(vehicle.acoustics),
+        "acoustics": memo.recall("channel", (heard,), lambda: _choice(numbers_only(heard), catalog)),
         "current": water,
         **({"bathymetry": _seabed_law(seabed, catalog, memo)} if seabed else {}),
         **memo.recall(

@@ -66,7 +66,7 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
     demand, along = wait_or_go(mind, demand, along, error)
     depth = choose_depth(mind, measured, error, time)
     reference = compensate(mind, demand, along, depth, motion)
-    return reference, report(mind, measured, time)
+    return reference, report(mind, heard, time)
 
 
 @compiled

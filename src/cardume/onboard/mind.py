@@ -11,7 +11,8 @@ LONG_AGO = -1e9  # [s] before any mission
 NEVER = 1e9  # [s] after any mission; [m] beyond any depth
 UNTOLD = -1.0  # [-] phase of one that has not said it: below them all
 
-# The whole numbers of `Mind.features`: what of phases.py, pace.py and depths.py a vehicle's mission asks for.
+# The whole numbers of `Mind.features`: what of phases.py, pace.py, depths.py and
+# neighborhood.py a vehicle's mission asks for.
 (
     ORDERS_START,
     PACE_OVER,
@@ -22,8 +23,11 @@ UNTOLD = -1.0  # [-] phase of one that has not said it: below them all
     KEEPS_ALTITUDE,
     HAS_PHASES,
     FENCE_CORNERS,
+    ANSWERS,
+    FORESEES,
+    ROUNDS,
     NUM_FEATURES,
-) = range(10)
+) = range(13)
 OVER_TIME, OVER_PATH = 1, 2  # values of PACE_OVER and DEPTH_OVER; 0: no profile
 
 
@@ -46,6 +50,15 @@ class Datasheet(NamedTuple):
     angle: float = NOTHING  # [rad] azimuth and elevation by USBL
     heading: float = NOTHING  # [rad]
     attitude: float = NOTHING  # [rad] roll and pitch
+
+
+class Grid(NamedTuple):
+    """What is left of numbers that are sent in few bits: multiples of these; 0: they are sent as they are."""
+
+    position: float = 0.0  # [m]
+    state: float = 0.0  # [m]
+    path_speed: float = 0.0  # [m/s]
+    time: float = 0.0  # [s]
 
 
 class Orders(NamedTuple):
@@ -201,7 +214,9 @@ get_orders = ORDERS.reader(Orders)
 ORDERS_WIDTH = ORDERS.width
 POINT_WIDTH = 2
 
-OWN = Layout(Setup, Datasheet, DvlReading, Whereabouts, Water, Along, Speech, Correction, Progress, Journal, Sounding)
+OWN = Layout(
+    Setup, Datasheet, DvlReading, Whereabouts, Water, Along, Speech, Correction, Progress, Journal, Sounding, Grid
+)
 get_setup, put_setup = OWN.reader(Setup), OWN.writer(Setup)
 get_datasheet = OWN.reader(Datasheet)
 get_speed, put_speed = OWN.reader(DvlReading), OWN.writer(DvlReading)
@@ -212,6 +227,7 @@ get_speech, put_speech = OWN.reader(Speech), OWN.writer(Speech)
 get_correction, put_correction = OWN.reader(Correction), OWN.writer(Correction)
 get_progress, put_progress = OWN.reader(Progress), OWN.writer(Progress)
 get_journal, put_journal = OWN.reader(Journal), OWN.writer(Journal)
+get_grid = OWN.reader(Grid)
 get_sounding, put_sounding = OWN.reader(Sounding), OWN.writer(Sounding)
 
 OWN_WIDTH = OWN.width

@@ -3,14 +3,18 @@
 from typing import NamedTuple
 
 from cardume.compiler import Rows, at, compiled, load, negate, some, where
-from cardume.maths import to_cartesian, to_ned_3d
+from cardume.maths import floor, to_cartesian, to_ned_3d
 from cardume.maths.blocks import Spread
 from cardume.onboard.coordination import correct_speed
 from cardume.onboard.estimation.neighbors import predict
 from cardume.onboard.messaging import decide_to_send
 from cardume.onboard.mind import (
+    ANSWERS,
+    FORESEES,
     HAS_PHASES,
+    ROUNDS,
     Fresh,
+    Grid,
     LastSeen,
     Mind,
     News,
@@ -19,6 +23,7 @@ from cardume.onboard.mind import (
     get_along,
     get_datasheet,
     get_fresh,
+    get_grid,
     get_last_seen,
     get_news,
     get_outlook,
@@ -45,6 +50,7 @@ from cardume.paths.projection import project
 from cardume.signals import (
     NOTHING,
     Disagreement,
+    Forecast,
     Measured,
     Motion,
     NavigationEstimate,
@@ -52,7 +58,9 @@ from cardume.signals import (
     Outbox,
     PathError,
     Place,
+    Question,
     Report,
+    Sighting,
 )
 
 USBL_WIDTH = 4  # range, azimuth, elevation, age
@@ -241,7 +249,24 @@ def predict_neighbors(mind: Mind, heard: Rows, error: PathError, time: float) ->
         expect_correction(mind, load(mind.known, k), own_before)
     for k in range(1, load(mind.known, 0) + 1):
         bring_up_to_date(mind, load(mind.known, k), error, time)
+    if load(mind.features, FORESEES) > 0:
+        foresee(mind, error, own_before, time)
     return disagreement_of(mind, mind.me, error.path_parameter, error.path_parameter)
+
+
+@compiled
+def foresee(mind: Mind, error: PathError, own_before: float, time: float) -> None:
+    """Predict oneself as the others do, from what was last said: gamma_hat of event-triggered sending.
+
+    Args:
+        mind: whose view it is.
+        error: where it is on its path.
+        own_before: [m] own coordination state at the last tick.
+        time: [s]
+    """
+    expect_correction(mind, mind.me, own_before)
+    bring_up_to_date(mind, mind.me, error, time)
+    put_fresh(mind.others, mind.me, Fresh(0.0))
 
 
 @compiled
@@ -257,7 +282,8 @@ def expect_correction(mind: Mind, vehicle: int, own_before: float) -> None:
     apart = disagreement_of(mind, vehicle, state, own_before)
     has_view = apart.disagreement == apart.disagreement
     in_agreement = Disagreement(own_before, own_before, 0.0 * own_before)
-    correction = correct_speed(mind.book, vehicle, where(has_view, apart, in_agreement))
+    slot = mind.size if vehicle == mind.me else vehicle  # its own memory of the law is for what it does
+    correction = correct_speed(mind.book, slot, where(has_view, apart, in_agreement))
     put_outlook(mind.others, vehicle, Outlook(state, correction))
 
 
@@ -303,11 +329,18 @@ def disagreement_of(mind: Mind, vehicle: int, state: float, own_state: float) ->
 
 
 @compiled
-def report(mind: Mind, measured: Measured, time: float) -> Said:
+def report(mind: Mind, heard: Rows, time: float) -> Said:
     """What to tell the others now, if anything."""
-    along, speech = get_along(mind.own, 0), get_speech(mind.own, 0)
-    outbox = Outbox(time - speech.last_sent, along.coordination_state, along.path_speed, time)
-    sending = decide_to_send(mind.book, 0, outbox)
+    along, speech, setup = get_along(mind.own, 0), get_speech(mind.own, 0), get_setup(mind.own, 0)
+    elapsed, place = time - speech.last_sent, 1.0 * mind.me
+    outbox = Outbox(elapsed, along.coordination_state, along.path_speed, time, place, 1.0 * mind.size)
+    asked, deviation = 0.0 * outbox.elapsed, NOTHING * outbox.elapsed
+    if load(mind.features, ANSWERS) > 0:
+        asked = is_asked(mind, heard)
+    if load(mind.features, FORESEES) > 0:
+        deviation = along.coordination_state - get_outlook(mind.others, mind.me).state
+    turn = Question(setup.shares_sightings, asked)
+    sending = decide_to_send(mind.book, 0, outbox, turn, Forecast(deviation))
     sends = sending > 0.5
     after = where(sends, Speech(time + 0.0 * speech.sequence, speech.sequence + 1.0), speech)
     put_speech(mind.own, 0, after)
@@ -318,5 +351,84 @@ def report(mind: Mind, measured: Measured, time: float) -> Said:
         along.coordination_state,
         along.path_speed,
         get_progress(mind.own, 0).phase,
+        next_to_answer(mind, after.sequence),
     )
+    if load(mind.features, ROUNDS) > 0:
+        told = rounded_report(told, get_grid(mind.own, 0))
+    if load(mind.features, FORESEES) > 0:
+        said = News(told.coordination_state, told.path_speed, told.time_of_validity, told.phase)
+        put_news(mind.others, mind.me, where(sends, said, get_news(mind.others, mind.me)))
+        put_fresh(mind.others, mind.me, Fresh(where(sends, 1.0, 0.0)))
     return Said(told, mind.others)
+
+
+@compiled
+def is_asked(mind: Mind, heard: Rows) -> float:
+    """Whether a message of this tick asks this vehicle [-]."""
+    asked = 0.0 * get_speech(mind.own, 0).sequence
+    for source in range(load(mind.sources, 0)):
+        message = message_from(heard, mind.size, source)
+        asked = where(is_fresh(message) & (head_of(message).asks == 1.0 * mind.me), 1.0, asked)
+    return asked
+
+
+@compiled
+def next_to_answer(mind: Mind, sequence: float) -> float:
+    """Place of the vehicle that a message asks [-]: of the one with the head, the others in turn; else -1.
+
+    Args:
+        mind: whose message it is.
+        sequence: [-] of the message.
+    """
+    asks = 0.0 * sequence - 1.0
+    if load(mind.features, ANSWERS) > 0 and mind.size > 1:
+        others = mind.size - 1.0
+        turn = sequence - others * floor(sequence / others)
+        other = where(turn < 1.0 * mind.me, turn, turn + 1.0)
+        asks = where(get_setup(mind.own, 0).shares_sightings > 0.5, other, asks)
+    return asks
+
+
+@compiled
+def rounded(value: float, step: float) -> float:
+    """The multiple of a step that is nearest to a number.
+
+    Args:
+        value: [any]
+        step: [any] 0: the number itself.
+    """
+    return where(step > 0.0, step * floor(value / where(step > 0.0, step, 1.0) + 0.5), value)
+
+
+@compiled
+def rounded_report(told: Report, grid: Grid) -> Report:
+    """A report as it is after its way through few bits."""
+    return Report(
+        told.sending,
+        told.sequence,
+        told.time_of_validity,
+        rounded(told.coordination_state, grid.state),
+        rounded(told.path_speed, grid.path_speed),
+        told.phase,
+        told.asks,
+    )
+
+
+@compiled
+def rounded_sighting(seen: Sighting, grid: Grid) -> Sighting:
+    """A sighting as it is after its way through few bits, which say nothing of errors, nor of a range alone."""
+    unsaid, is_range = NOTHING * seen.north, seen.range == seen.range
+    return Sighting(
+        where(is_range, NOTHING, rounded(seen.north, grid.position)),
+        where(is_range, NOTHING, rounded(seen.east, grid.position)),
+        where(is_range, NOTHING, rounded(seen.time_of_fix, grid.time)),
+        rounded(seen.coordination_state, grid.state),
+        rounded(seen.path_speed, grid.path_speed),
+        rounded(seen.time_of_validity, grid.time),
+        seen.phase,
+        unsaid,
+        unsaid,
+        unsaid,
+        unsaid,
+        unsaid,
+    )

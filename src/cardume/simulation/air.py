@@ -10,6 +10,8 @@ from cardume.maths.random import Key, uniforms
 from cardume.onboard.mind import (
     FLAG,
     HEAD,
+    ROUNDS,
+    get_grid,
     get_last_seen,
     get_news,
     get_seen,
@@ -18,15 +20,14 @@ from cardume.onboard.mind import (
     put_head,
     put_seen,
 )
-from cardume.onboard.neighborhood import Said
+from cardume.onboard.neighborhood import Said, rounded_sighting
 from cardume.signals import NOTHING, Link, Sighting
-from cardume.simulation.fleet import Fleet, book_of, get_vessel, sources_of
-from cardume.simulation.recording import write_message
+from cardume.simulation.contention import contend
+from cardume.simulation.fleet import NEVER, Fleet, book_of, features_of, get_medium, get_vessel, sources_of
+from cardume.simulation.recording import next_row, write_message
 from cardume.simulation.score import note_heard, note_sent
 from cardume.simulation.sensing import LINK, key_of
 from cardume.world.acoustics.base import propagate
-
-NEVER = 1e300  # [s]
 
 
 @compiled
@@ -109,6 +110,8 @@ def speak(fleet: Fleet, sender: int, said: Said) -> None:
                 where_seen.range,
                 where_seen.depth,
             )
+            if load(features_of(fleet, sender), ROUNDS) > 0:
+                seen = rounded_sighting(seen, get_grid(fleet.minds, sender))
             put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
         note_sent(fleet, sender, sends)
 
@@ -122,6 +125,8 @@ def carry(fleet: Fleet, time: float, now: int) -> None:
             sender = load(sources, source + 1)
             if some(load(fleet.air.sending, sender) > 0.5):
                 transmit(fleet, sender, listener, listener * fleet.air.widest + source, time, now)
+    if fleet.air.is_shared > 0:
+        contend(fleet, time)
 
 
 @compiled
@@ -133,7 +138,10 @@ def transmit(fleet: Fleet, sender: int, listener: int, link: int, time: float, n
     own, others = key_of(fleet, listener, LINK), key_of(fleet, sender, LINK)
     pair = Key(own.seed_low, own.seed_high, own.stream, own.vehicle_low, others.vehicle_low)
     draw_1, draw_2, _, _ = uniforms(pair, now)
-    slant = Link(hypot(level, there.depth - here.depth), draw_1, draw_2)
+    payload = 0.0 * level
+    if fleet.air.is_shared > 0:
+        payload = get_medium(fleet.air.modems, sender).payload
+    slant = Link(hypot(level, there.depth - here.depth), draw_1, draw_2, time, payload, where(sends, 1.0, 0.0))
     arrival = propagate(book_of(fleet, listener, fleet.tick), sender, slant)
     delivered = arrival.delivered > 0.5
     slot = (load(fleet.air.sent, sender) - 1) % fleet.air.slots
@@ -143,5 +151,7 @@ def transmit(fleet: Fleet, sender: int, listener: int, link: int, time: float, n
     due = load(fleet.air.due, link)
     store(fleet.air.due, link, where(sends & (arrives < due), arrives, due))
     validity = head_of(message_in(fleet, sender, slot)).time_of_validity
+    if fleet.air.is_shared > 0:
+        store(fleet.air.logged, row, next_row(fleet))
     received, lost = where(delivered, arrives, NOTHING), where(delivered, 0.0, 1.0)
     write_message(fleet, time, received, sender, listener, lost, validity)

@@ -14,6 +14,7 @@ from cardume.maths.random import Key
 from cardume.onboard.mind import NUM_FEATURES, ORDERS_START, OTHERS_WIDTH, OWN_WIDTH, Mind
 from cardume.paths.table import PathPlace
 from cardume.signals import AhrsReading, Command, DvlReading, Measured, Reference, ShaftReading, VesselState, Water
+from cardume.world.acoustics.medium import Medium
 
 HANDLES = len(FAMILIES) * COLUMNS
 
@@ -104,7 +105,25 @@ TIMING.lay_over(Timing, "next_sample", Due)
 get_timing, put_due = TIMING.reader(Timing), TIMING.writer(Due)
 get_key, put_key = KEY.reader(Key), KEY.writer(Key)
 
+MODEM = Layout(Medium)
+get_medium = MODEM.reader(Medium)
+
 SEEN = Layout(VesselState, Water)  # what a sensor with a latency looks back at
+
+
+class OnAir(NamedTuple):
+    """When one message sounds at one vehicle, which need not listen, and how loud."""
+
+    start: float = -1.0  # [s]
+    end: float = -1.0  # [s]
+    level: float = -1e9  # [dB re 1 uPa]
+
+
+ON_AIR = Layout(OnAir)
+get_on_air, put_on_air = ON_AIR.reader(OnAir), ON_AIR.writer(OnAir)
+
+
+NEVER = 1e300  # [s]
 
 
 class Air(NamedTuple):
@@ -119,6 +138,11 @@ class Air(NamedTuple):
     slots: int  # [-] messages of one sender that can be under way at once
     messages: int  # [-] numbers in a message
     widest: int  # [-] links per listener, at most
+    is_shared: int  # [-] 1: modems cannot hear while they send, and messages that overlap destroy each other
+    asks: int  # [-] 1: a USBL reading comes with the answer to a question
+    modems: Rows  # (vehicle, the records of MODEM)
+    on_air: Rows  # (vehicle, vehicle, slot, OnAir) what sounds at the first when the second sends
+    logged: Rows  # (link, slot) the row of the log of messages that each stands in
 
 
 class Fleet(NamedTuple):
@@ -181,6 +205,8 @@ class Whole(NamedTuple):
     has_phases: int = 0
     is_watched: int = 0
     has_weather: int = 0
+    is_shared: int = 0
+    asks: int = 0
 
 
 class Tables(NamedTuple):
@@ -212,6 +238,9 @@ class Tables(NamedTuple):
     due: np.ndarray
     arrivals: np.ndarray
     inbox: np.ndarray
+    modems: np.ndarray
+    on_air: np.ndarray
+    logged: np.ndarray
     scores: np.ndarray
     fleet_score: np.ndarray
     histograms: np.ndarray
@@ -237,6 +266,11 @@ def fleet_of(tables: Tables) -> Fleet:
         whole.slots,
         whole.message_width,
         whole.widest,
+        whole.is_shared,
+        whole.asks,
+        rows_of(tables.modems),
+        rows_of(tables.on_air),
+        rows_of(tables.logged),
     )
     return Fleet(
         whole.size,

@@ -7,11 +7,12 @@ from typing import Literal
 import numpy as np
 
 from cardume.laws import Law
-from cardume.onboard.mind import OVER_PATH, OVER_TIME, Datasheet, Orders, Setup
+from cardume.onboard.mind import OVER_PATH, OVER_TIME, Datasheet, Grid, Orders, Setup
 from cardume.paths.table import PathPlace
 from cardume.signals import VesselState
 from cardume.simulation.safety import Safety
 from cardume.simulation.score import Rules
+from cardume.world.acoustics.medium import Medium
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,8 @@ class VehiclePlan:
         orders: what more it is told, of phases, profiles and limits.
         safety: the limits of depth and altitude that it is measured by.
         datasheet: what it is told of its sensors' errors.
+        medium: its modem and the water, where vehicles share the water; all of a fleet have one, or none.
+        grid: what is left of the numbers that it sends; None: all.
     """
 
     name: str
@@ -99,6 +102,8 @@ class VehiclePlan:
     orders: OrderBook = OrderBook()
     safety: Safety = Safety()
     datasheet: Datasheet = Datasheet()
+    medium: Medium | None = None
+    grid: Grid | None = None
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from cardume.compiler import Layout, at, compiled, load, store, where
+from cardume.compiler import Layout, at, compiled, load, scatter, store, where
 from cardume.maths import atan2, hypot, to_ned
 from cardume.onboard.mind import (
     HAS_PHASES,
@@ -16,6 +16,7 @@ from cardume.onboard.mind import (
     get_whereabouts,
 )
 from cardume.onboard.phases import GO, HOLD, SURFACE
+from cardume.signals import NOTHING
 from cardume.simulation.fleet import Fleet, features_of, get_on_path, get_reference, get_vessel, get_water
 from cardume.simulation.sensing import seabed_below
 
@@ -79,6 +80,8 @@ class MessageRow(NamedTuple):
 LOG, MESSAGE_LOG = Layout(Truth, Thought), Layout(MessageRow)
 CHANNELS = (*Truth._fields, *Thought._fields)
 put_truth, put_thought, put_message = LOG.writer(Truth), LOG.writer(Thought), MESSAGE_LOG.writer(MessageRow)
+RECEIVED, LOST = MESSAGE_LOG.column(MessageRow, "time_received"), MESSAGE_LOG.column(MessageRow, "lost")
+MESSAGE_WIDTH = 1.0 * MESSAGE_LOG.width
 RECORDS, MESSAGES, RECORD_ROOM, MESSAGE_ROOM, TICKS_PER_RECORD, NUM_COUNTS = range(6)  # columns of Fleet.counts
 
 
@@ -167,6 +170,28 @@ def write_predictions(fleet: Fleet, row: int, vehicle: int) -> None:
     others = at(fleet.others, vehicle * fleet.size * OTHERS_WIDTH)
     for other in range(fleet.size):
         store(fleet.predictions, row * fleet.size + other, get_outlook(others, other).state)
+
+
+@compiled
+def next_row(fleet: Fleet) -> float:
+    """The row of the next message in the log [-]; -1 where there is no room."""
+    index = load(fleet.counts, MESSAGES)
+    return 1.0 * index if index < load(fleet.counts, MESSAGE_ROOM) else -1.0
+
+
+@compiled
+def note_lost(fleet: Fleet, row: float, lost: bool) -> None:
+    """Correct the log where a message that was on its way is lost all the same.
+
+    Args:
+        fleet: the mission.
+        row: [-] of the log; below 0: none.
+        lost: [-] whether it is, in each lane.
+    """
+    is_there = lost & (row > -0.5)
+    first = where(is_there, row, 0.0) * MESSAGE_WIDTH
+    scatter(fleet.messages, first + RECEIVED, is_there, NOTHING)
+    scatter(fleet.messages, first + LOST, is_there, 1.0)
 
 
 @compiled

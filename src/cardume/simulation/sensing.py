@@ -1,9 +1,9 @@
 """Sensors: each reads the truth of its latency ago at its own period, and holds or forgets the reading."""
 
-from cardume.compiler import at, compiled, floor, some, store, where
+from cardume.compiler import at, compiled, floor, load, some, store, where
 from cardume.maths import to_body
 from cardume.maths.random import Key, normals
-from cardume.onboard.mind import get_setup
+from cardume.onboard.mind import get_setup, head_of, is_fresh
 from cardume.onboard.neighborhood import USBL_WIDTH
 from cardume.signals import (
     NOTHING,
@@ -49,6 +49,7 @@ from cardume.simulation.fleet import (
     put_satellite,
     put_shaft,
     put_velocity,
+    sources_of,
 )
 from cardume.simulation.noise import NOISE_WIDTH, noise_of_reading
 from cardume.world.bathymetry import sound
@@ -285,8 +286,25 @@ def sense_others(fleet: Fleet, vehicle: int, now: int) -> None:
         timing = timing_of(fleet, vehicle, USBL)
         due = timing.next_sample <= now
         for other in range(fleet.size):
-            hear_beacon(fleet, vehicle, other, timing, due, now)
+            if fleet.air.asks > 0:
+                hear_answer(fleet, vehicle, other, timing, now)
+            else:
+                hear_beacon(fleet, vehicle, other, timing, due, now)
         schedule_next(fleet, vehicle, USBL, timing, due)
+
+
+@compiled
+def hear_answer(fleet: Fleet, vehicle: int, other: int, timing: Timing, now: int) -> None:
+    """A USBL reading from an answer that came in the last tick, valid when that was sent: range needs both ways."""
+    sources, answered, latency = sources_of(fleet, vehicle), timing.latency < 0.0, 0.0 * timing.latency
+    for source in range(load(sources, 0)):
+        if load(sources, source + 1) == other:
+            message = at(fleet.air.inbox, (vehicle * fleet.air.widest + source) * fleet.air.messages)
+            ticks = now - floor(head_of(message).time_of_validity / fleet.tick + 0.5)
+            answered = is_fresh(message) & (ticks < fleet.past_size)
+            latency = where(answered, ticks, 0.0)
+    heard_then = Timing(timing.next_sample, timing.sample, timing.period, latency, timing.noise_pairs)
+    hear_beacon(fleet, vehicle, other, heard_then, answered, now)
 
 
 @compiled
@@ -307,7 +325,7 @@ def hear_beacon(fleet: Fleet, vehicle: int, other: int, timing: Timing, due: boo
             sampling_of(fleet, timing, now),
         )
         heard = due & (reading.range == reading.range)
-        store(rows, 0, reading.range)
-        store(rows, 1, reading.azimuth)
-        store(rows, 2, reading.elevation)
+        store(rows, 0, where(heard, reading.range, load(rows, 0)))
+        store(rows, 1, where(heard, reading.azimuth, load(rows, 1)))
+        store(rows, 2, where(heard, reading.elevation, load(rows, 2)))
         store(rows, USBL_WIDTH - 1, where(heard, timing.latency * fleet.tick, NOTHING))

@@ -15,6 +15,7 @@ from cardume.onboard.mind import (
     OTHERS,
     OWN,
     Fresh,
+    Grid,
     Journal,
     LastSeen,
     News,
@@ -30,10 +31,11 @@ from cardume.onboard.phases import DIVE, GATHER, GO, PHASES
 from cardume.paths.along import arc_length_at
 from cardume.paths.projection import point_at
 from cardume.paths.table import PathPlace
-from cardume.signals import Noise
-from cardume.simulation.air import NEVER
+from cardume.signals import Forecast, Noise, Question
 from cardume.simulation.fleet import (
     KEY,
+    MODEM,
+    NEVER,
     NUM_SENSORS,
     SEEN,
     SENSORS,
@@ -41,6 +43,7 @@ from cardume.simulation.fleet import (
     TIMING,
     VEHICLE,
     Held,
+    OnAir,
     Satellite,
     Tables,
     Timing,
@@ -52,7 +55,9 @@ from cardume.simulation.plan import Choice, Plan, VehiclePlan
 from cardume.simulation.recording import LOG, MESSAGE_LOG, NUM_COUNTS
 from cardume.simulation.score import BINS, FLEET_SCORES, HISTOGRAMS, RULES, SCORES, FleetScore
 from cardume.simulation.tick import TROUBLE_WIDTH
+from cardume.world.acoustics.modem import airtime
 
+FARTHEST_ANSWER = 3.0  # [s] on the way, beyond which an answer gives no USBL reading
 MOST_SLOTS = 64  # messages of one sender under way at once
 USBL_COLUMNS = 4
 CHANCES = ("sigma", "invalid")  # parts of the names of parameters of which chance takes no part where they are 0
@@ -81,7 +86,7 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: M
         (plan.hears, *(v.setup for v in vehicles)),
         lambda: _graph(plan, vehicles),
     )
-    slots, past_size = _slots(vehicles, memo), _past_size(vehicles, plan.tick, memo)
+    slots, past_size = _slots(vehicles, plan.tick, memo), _past_size(vehicles, plan.tick, memo)
     paths, path_starts = memo.recall("paths", tuple(v.path for v in vehicles), lambda: _paths(vehicles))
     records = math.ceil(plan.num_ticks * plan.tick / plan.log_period - 1e-9) + 1 if plan.log_period > 0 else 0
     room = _message_room(plan, vehicles, widest) if records else 0
@@ -99,6 +104,8 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: M
         int(any(v.orders.has_phases for v in vehicles)),
         int(plan.is_watched),
         int(any(_noise_pairs(v.laws["current"], memo) for v in vehicles if "current" in v.laws)),
+        int(any(v.medium for v in vehicles)),
+        int(_asks(vehicles)),
     )
     blank = memo.recall("blank", (), lambda: _blank(whole, records, room), (whole, records, room))
     tables = blank._replace(
@@ -134,12 +141,14 @@ def _rows(plan: Plan, vehicles: Sequence[VehiclePlan], memo: Memo) -> dict[str, 
     tick = plan.tick
     known = table("known row", [((v.place,), None) for v in vehicles], _known_of)
     orders = tuple(v.orders for v in vehicles)
-    numbers, features = memo.recall("orders", orders, lambda: _orders(vehicles))
+    talk = tuple(tuple(_talk(v)) for v in vehicles)
+    numbers, features = memo.recall("orders", orders, lambda: _orders(vehicles), talk)
+    media = tuple(v.medium for v in vehicles if v.medium)
+    modems = {"modems": np.concatenate([_row(MODEM, medium) for medium in media])} if media else {}
     return {
+        **modems,
         "vehicles": table("vehicle row", [((v.state, v.place), None) for v in vehicles], _vehicle_row),
-        "minds": table(
-            "mind row", [((v.setup, v.datasheet, v.orders, v.path), _estimate(v)) for v in vehicles], _mind_row
-        ),
+        "minds": table("mind row", [_told(v) for v in vehicles], _mind_row),
         "others": memo.recall("others", (known,), lambda: np.tile(known, len(vehicles))),
         "timings": table(
             "timing row", [(_sensors_of(v), tick) for v in vehicles], lambda v: _timing_row(v, tick, memo)
@@ -188,6 +197,9 @@ def _blank(whole: Whole, records: int, room: int) -> Tables:
         due=np.full(links, NEVER),
         arrivals=np.full(links * whole.slots, NEVER),
         inbox=np.full(links * whole.message_width, np.nan),
+        modems=np.zeros(size * MODEM.width),
+        on_air=np.tile(np.array(OnAir()), size * size * whole.slots if whole.is_shared else 1),
+        logged=np.full(links * whole.slots if whole.is_shared else 1, -1.0),
         scores=none,
         fleet_score=none,
         histograms=np.zeros(size * HISTOGRAMS * BINS),
@@ -212,6 +224,11 @@ def _vehicle_row(vehicle: VehiclePlan) -> np.ndarray:
     return _row(VEHICLE, vehicle.state, vehicle.place, Held(), Satellite())
 
 
+def _told(vehicle: VehiclePlan) -> tuple[tuple[Any, ...], Hashable]:
+    """The parts and values of which a mind's row is made."""
+    return (vehicle.setup, vehicle.datasheet, vehicle.orders, vehicle.path), (_estimate(vehicle), vehicle.grid)
+
+
 def _mind_row(vehicle: VehiclePlan) -> np.ndarray:
     believed = vehicle.setup, vehicle.datasheet, Whereabouts(*_estimate(vehicle)), Speech(), _first_phase(vehicle)
     return _row(OWN, *believed, *_unwritten(vehicle))
@@ -225,17 +242,28 @@ def _first_phase(vehicle: VehiclePlan) -> Progress:
     return Progress(phase, 0.0, 0.0, start.north, start.east)
 
 
-def _unwritten(vehicle: VehiclePlan) -> tuple[Journal, Sounding]:
+def _unwritten(vehicle: VehiclePlan) -> tuple[Journal, Sounding, Grid]:
     begun = PHASES[round(_first_phase(vehicle).phase)]
-    return Journal(**{begun: 0.0}), Sounding()
+    return Journal(**{begun: 0.0}), Sounding(), vehicle.grid or Grid()
 
 
 def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
     """The orders of all vehicles, one after the other, and (vehicle, NUM_FEATURES) whole numbers."""
     numbers = [v.orders.numbers for v in vehicles]
     starts = np.cumsum([0, *map(len, numbers)])[:-1]
-    features = [v.orders.features(int(start)) for v, start in zip(vehicles, starts, strict=True)]
+    features = [[*v.orders.features(int(start)), *_talk(v)] for v, start in zip(vehicles, starts, strict=True)]
     return np.concatenate(numbers), np.array(features, np.int64).ravel()
+
+
+def _talk(vehicle: VehiclePlan) -> list[int]:
+    """Whether a vehicle answers questions, foresees what others make of its words, and rounds them."""
+    law = vehicle.laws["messaging"].law
+    return [int(law.asks_for(Question)), int(law.asks_for(Forecast)), int(vehicle.grid is not None)]
+
+
+def _asks(vehicles: Sequence[VehiclePlan]) -> bool:
+    """Whether a USBL reading comes with the answer to a question."""
+    return any("usbl" in v.laws and v.laws["messaging"].law.asks_for(Question) for v in vehicles)
 
 
 def _known_of(vehicle: VehiclePlan) -> np.ndarray:
@@ -310,7 +338,7 @@ def _handles_of(laws: Sequence[Sequence[tuple[str, Law]]], lanes: bool) -> np.nd
             width = law.initial_memory().size
             row[FAMILIES.index(family)] = law.handle(lanes), gain, memory, width
             gain += law.gains_width
-            memory += width * (size if family in PER_OTHER else 1)
+            memory += width * _copies(family, size)
     return table.ravel()
 
 
@@ -342,8 +370,13 @@ def _memory_row(vehicle: VehiclePlan, size: int) -> np.ndarray:
     for family in FAMILIES:
         if family in vehicle.laws:
             start = _initial_memory(vehicle, family, vehicle.laws[family])
-            parts += [start] * (size if family in PER_OTHER else 1)
+            parts += [start] * _copies(family, size)
     return np.concatenate(parts)
+
+
+def _copies(family: str, size: int) -> int:
+    """How many memories a law has: of coordination, one more for what the others think it does."""
+    return size + (family == "coordination") if family in PER_OTHER else 1
 
 
 def _initial_memory(vehicle: VehiclePlan, family: str, choice: Choice) -> np.ndarray:
@@ -393,16 +426,33 @@ def _graph(plan: Plan, vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, int
     return table.ravel(), width, max(len(x) for x in sources)
 
 
-def _slots(vehicles: Sequence[VehiclePlan], memo: Memo) -> int:
-    """How many messages of one sender can be under way: the longest delay over the shortest period."""
+def _slots(vehicles: Sequence[VehiclePlan], tick: float, memo: Memo) -> int:
+    """How many messages of one sender can be under way: the longest delay over the shortest time between two.
 
-    def value(vehicle: VehiclePlan, family: str, name: str, otherwise: float) -> float:
-        choice = vehicle.laws[family]
-        return memo.recall(name, (choice,), lambda: _parameter(choice, name, otherwise))
+    Lanes share the places; where they may speak in different ticks there is one for every tick.
+    """
 
-    delays = [value(v, "acoustics", "delay", 2.0) for v in vehicles]
-    periods = [value(v, "messaging", "period", 0.5) for v in vehicles]
-    return min(MOST_SLOTS, math.ceil((max(delays) + 2.0) / min(periods)) + 2)
+    def value(vehicle: VehiclePlan, family: str, what: str, make: Callable[[VehiclePlan], float]) -> float:
+        return memo.recall(what, (vehicle.laws[family], vehicle.medium), lambda: make(vehicle), tick)
+
+    delays = [value(v, "acoustics", "longest delay", _delay) for v in vehicles]
+    intervals = [value(v, "messaging", "shortest interval", lambda v: _interval(v, tick)) for v in vehicles]
+    return min(MOST_SLOTS, math.ceil((max(delays) + 2.0) / min(intervals)) + 2)
+
+
+def _delay(vehicle: VehiclePlan) -> float:
+    """Longest time [s] from the sending of a message until it is read, but for the way."""
+    if vehicle.medium is not None:
+        return airtime(vehicle.medium, vehicle.medium.payload) + vehicle.medium.processing
+    return _parameter(vehicle.laws["acoustics"], "delay", 2.0)
+
+
+def _interval(vehicle: VehiclePlan, tick: float) -> float:
+    """Shortest time [s] between two messages of a vehicle, the same in all lanes."""
+    law = vehicle.laws["messaging"].law
+    if law.asks_for(Question) or law.asks_for(Forecast):
+        return tick
+    return _parameter(vehicle.laws["messaging"], "period", _parameter(vehicle.laws["messaging"], "slot", 0.5))
 
 
 def _parameter(choice: Choice, name: str, otherwise: float) -> float:
@@ -416,11 +466,13 @@ def _past_size(vehicles: Sequence[VehiclePlan], tick: float, memo: Memo) -> int:
         sensors = [choice for choice in _sensors_of(vehicle) if choice is not None]
         return memo.recall("latency", tuple(sensors), lambda: max([0.0, *(c.value("latency") for c in sensors)]))
 
-    return 1 + max(round(longest(vehicle) / tick) for vehicle in vehicles)
+    answer = max(_delay(v) for v in vehicles) + FARTHEST_ANSWER if _asks(vehicles) else 0.0
+    return 1 + max(math.ceil(answer / tick - 1e-9), *(round(longest(vehicle) / tick) for vehicle in vehicles))
 
 
 def _message_room(plan: Plan, vehicles: Sequence[VehiclePlan], widest: int) -> int:
-    periods = [_parameter(v.laws["messaging"], "period", plan.tick) for v in vehicles]
+    messaging = [v.laws["messaging"] for v in vehicles]
+    periods = [_parameter(choice, "period", _parameter(choice, "slot", plan.tick)) for choice in messaging]
     return int(len(vehicles) * widest * (plan.duration / max(plan.tick, min(periods)) + 2))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from cardume.maths.graphs import adjacency_of, can_agree, spectrum
 from cardume.missions.checks.finding import Finding, Ranked, at_least, at_most, setting_word, show, worst
-from cardume.missions.checks.fixes import can_hear, has_parameter, travel_time
+from cardume.missions.checks.fixes import can_hear, has_parameter, speaking, travel_time
 from cardume.missions.checks.scene import Craft, Scene
 
 
@@ -126,13 +126,13 @@ def check_late_rates(scene: Scene) -> list[Finding]:
 
 
 def _hurried(scene: Scene, place: int) -> Iterator[Ranked]:
-    craft, tick = scene.crafts[place], scene.mission.tick
+    craft = scene.crafts[place]
     if not craft.correction:
         return
     for k, speaker in enumerate(scene.crafts):
         if k == place or not scene.mission.adjacency[place][k]:
             continue
-        age = _age_carried_on(craft, speaker, scene.distances[place, k], tick)
+        age = _age_carried_on(scene, craft, speaker, scene.distances[place, k])
         if craft.correction * age < craft.reach:
             continue
         key = scene.key(craft, "coordination.gain")
@@ -144,12 +144,13 @@ def _hurried(scene: Scene, place: int) -> Iterator[Ranked]:
         yield Ranked(age, Finding("warning", key, message, at_most(key, 0.8 * craft.reach / age, "m/s")))
 
 
-def _age_carried_on(listener: Craft, speaker: Craft, distance: float, tick: float) -> float:
+def _age_carried_on(scene: Scene, listener: Craft, speaker: Craft, distance: float) -> float:
     """[s] for which a report is carried on by its own path speed; 0 where that does no harm."""
-    messaging, law = speaker.law("messaging"), listener.law("neighbors").law.name
-    if messaging.law.name != "periodic" or not can_hear(speaker.plan, listener.plan, distance):
+    law, tick = listener.law("neighbors").law.name, scene.mission.tick
+    spoken = speaking(speaker.plan, scene.plan.vehicles, tick)
+    if spoken is None or not can_hear(speaker.plan, listener.plan, distance):
         return 0.0
-    way, period = travel_time(listener.plan, distance, tick), messaging.value("period")
+    way, period = travel_time(listener.plan, distance, tick), spoken[0]
     if law == "reported_speed":
         return way + period
     return way if law == "coordinated" and period < way else 0.0

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cardume.missions.medium_access import cycle_of, slot_of, time_on_air
 from cardume.simulation.plan import Choice, VehiclePlan
 
 EXCHANGES = 200  # messages followed to find how long a reading waits for one
@@ -67,7 +68,7 @@ def fixes_of(vehicles: Sequence[VehiclePlan], distances: np.ndarray, tick: float
         for k, vehicle in enumerate(vehicles):
             if found[k].source is None:
                 heard = [
-                    _by_usbl(speaker, vehicle, distances[j, k], tick)
+                    _by_usbl(speaker, vehicle, vehicles, distances[j, k], tick)
                     for j, speaker in enumerate(vehicles)
                     if j != k and found[j].source is not None and can_hear(speaker, vehicle, distances[j, k])
                 ]
@@ -104,42 +105,71 @@ def travel_time(listener: VehiclePlan, distance: float, tick: float) -> float:
         distance: [m] to the speaker.
         tick: [s]
     """
-    channel, way = listener.laws["acoustics"], 0.0
-    if has_parameter(channel, "delay"):
+    channel, medium, way = listener.laws["acoustics"], listener.medium, 0.0
+    if medium is not None:
+        way = time_on_air(listener) + distance / medium.sound_speed + medium.processing
+    elif has_parameter(channel, "delay"):
         way = channel.value("delay")
-    if has_parameter(channel, "sound_speed"):
+    if medium is None and has_parameter(channel, "sound_speed"):
         way += distance / channel.value("sound_speed")
     return tick * max(1, math.ceil(way / tick - 1e-6))
 
 
-def _by_usbl(speaker: VehiclePlan, listener: VehiclePlan, distance: float, tick: float) -> Fixes | None:
-    usbl, messaging, channel = speaker.laws.get("usbl"), speaker.laws["messaging"], listener.laws["acoustics"]
+def speaking(speaker: VehiclePlan, fleet: Sequence[VehiclePlan], tick: float) -> tuple[float, float] | None:
+    """Period and offset [s] at which a vehicle speaks; None where its schedule goes by something else than the clock.
+
+    Args:
+        speaker: of the fleet.
+        fleet: all, in any order.
+        tick: [s]
+    """
+    messaging = speaker.laws["messaging"]
+    if messaging.law.name == "periodic":
+        return messaging.value("period"), messaging.value("offset")
+    slot = slot_of(speaker, fleet, tick)
+    if messaging.law.name == "tdma":
+        return len(fleet) * slot, slot * sorted(v.name for v in fleet).index(speaker.name)
+    if messaging.law.name == "polling":
+        return (slot, 0.0) if "usbl" in speaker.laws else (cycle_of(speaker, fleet, tick), 0.0)
+    return None
+
+
+def _by_usbl(
+    speaker: VehiclePlan, listener: VehiclePlan, fleet: Sequence[VehiclePlan], distance: float, tick: float
+) -> Fixes | None:
+    usbl, channel = speaker.laws.get("usbl"), listener.laws["acoustics"]
     if usbl is None or (has_parameter(usbl, "max_range") and distance > usbl.value("max_range")):
         return None
-    if messaging.law.name != "periodic":
+    spoken = speaking(speaker, fleet, tick)
+    if spoken is None:
         return Fixes(source=speaker.name)
-    spoken, read = messaging.value("period"), usbl.value("period")
     loss = channel.value("loss") if has_parameter(channel, "loss") else 0.0
-    wait = waiting_time(speaker, tick)
+    if speaker.laws["messaging"].law.name == "polling":  # question, answer, and the next questions, of which one tells
+        cycle, each = cycle_of(speaker, fleet, tick), spoken[0]
+        told = 1.0 - loss ** max(1, round(cycle / each))
+        return Fixes(source=speaker.name, period=cycle, loss=1.0 - (1.0 - loss) ** 2 * told, age=each)
+    period, read = spoken[0], usbl.value("period")
+    wait = waiting_time(speaker, fleet, tick)
     return Fixes(
         source=speaker.name,
-        period=max(spoken, read),
-        loss=loss ** max(1, math.floor(read / spoken + 1e-6)),  # a reading may be told several times
+        period=max(period, read),
+        loss=loss ** max(1, math.floor(read / period + 1e-6)),  # a reading may be told several times
         wait=wait,
         age=usbl.value("latency") + wait + travel_time(listener, distance, tick),
     )
 
 
-def waiting_time(speaker: VehiclePlan, tick: float) -> float:
+def waiting_time(speaker: VehiclePlan, fleet: Sequence[VehiclePlan], tick: float) -> float:
     """How long [s], on average, a USBL reading waits for the message that first carries it.
 
     Args:
-        speaker: with a USBL and a periodic schedule.
+        speaker: with a USBL, that speaks by the clock.
+        fleet: all.
         tick: [s]
     """
-    usbl, messaging = speaker.laws["usbl"], speaker.laws["messaging"]
-    period, every = round(messaging.value("period") / tick), max(1, round(usbl.value("period") / tick))
-    latency, first = round(usbl.value("latency") / tick), math.ceil(messaging.value("offset") / tick - 0.5)
+    usbl, (period_s, offset) = speaker.laws["usbl"], speaking(speaker, fleet, tick) or (tick, 0.0)
+    period, every = round(period_s / tick), max(1, round(usbl.value("period") / tick))
+    latency, first = round(usbl.value("latency") / tick), math.ceil(offset / tick - 0.5)
     sent = first + max(1, period) * np.arange(EXCHANGES)
     newest = (sent - latency) // every  # number of the last reading delivered by then
     is_new = (newest >= 0) & (np.diff(newest, prepend=-1) > 0)

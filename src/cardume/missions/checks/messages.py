@@ -28,7 +28,7 @@ def check_waiting(scene: Scene) -> Iterator[Finding]:
         if usbl is None:
             continue
         every, period = usbl.value("period"), craft.law("messaging").value("period")
-        wait = waiting_time(craft.plan, tick)
+        wait = waiting_time(craft.plan, scene.plan.vehicles, tick)
         is_locked = abs(math.remainder(period, every)) < 0.5 * tick  # else no offset helps
         if not is_locked or wait < max(LONG_WAIT * every, 1.5 * tick):
             continue

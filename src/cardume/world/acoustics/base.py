@@ -1,6 +1,7 @@
 """Acoustics: what becomes of a transmission on its way to one receiver.
 
-A law gets a `Link` (range and two uniform draws) and gives an `Arrival`.
+A law gets a `Link` (range, two uniform draws, time and bytes) and gives an `Arrival`.  Each pair of listener and sender
+has a memory of its own; one that changes it does so only where `sent` is 1.
 """
 
 from cardume.laws import law_family

@@ -1,0 +1,128 @@
+"""What of a modem and of the water does not change during a mission."""
+
+from typing import Annotated, NamedTuple
+
+from cardume.laws import Meters, MetersPerSecond, NotNegative, Positive, Seconds
+from cardume.maths import log
+from cardume.parameters import Bounds, Unit
+from cardume.world.acoustics.ambient_noise import ambient_noise
+from cardume.world.acoustics.francois_garrison import francois_garrison
+from cardume.world.acoustics.sound_speed import mackenzie
+from cardume.world.acoustics.spreading import DECIBEL
+
+Decibels = Annotated[float, Unit("dB")]
+Hertz = Annotated[float, Unit("Hz")]
+Level = Annotated[float, Unit(""), Bounds(0.0, 1.0)]
+Share = Annotated[float, Unit(""), Bounds(0.0, 1.0, high_open=True)]
+Celsius = Annotated[float, Unit(""), Bounds(-2.0, 40.0)]
+Salinity = Annotated[float, Unit(""), Bounds(0.0, 45.0)]
+Acidity = Annotated[float, Unit(""), Bounds(7.0, 9.0)]
+Exponent = Annotated[float, Unit(""), Bounds(1.0, 2.5)]
+Deep = Annotated[float, Unit("m"), Bounds(0.0, 12_000.0)]
+Count = Annotated[float, Unit(""), Bounds(0.0, 4096.0)]
+FrameSize = Annotated[float, Unit(""), Bounds(1.0, 4096.0)]
+
+
+class Medium(NamedTuple):
+    """Modem and water, as numbers that each message needs."""
+
+    overhead: float  # [s] on the air before the first byte
+    byte_time: float  # [s] on the air for each byte
+    frame: float  # [-] bytes come in multiples of it
+    processing: float  # [s] from the end of the sound to its being read
+    sound_speed: float  # [m/s]
+    absorption: float  # [dB/m]
+    spreading: float  # [-]
+    source_level: float  # [dB] re 1 uPa at 1 m
+    noise_level: float  # [dB] re 1 uPa in the modem's band
+    half: float  # [dB] signal to noise at which half of the packets are lost
+    width: float  # [dB] of that slope
+    share: float  # [-] of the time that a link is out
+    burst: float  # [s] mean length of an outage
+    max_range: float  # [m]
+    capture: float  # [dB] by which a packet must be stronger than one that overlaps it
+    payload: float  # [-] bytes of a message; 0: what it says decides
+    code: float  # [-] bytes of the code that proves who sent it
+
+
+def medium_of(
+    dt: Seconds = 0.1,
+    overhead: NotNegative[Seconds] = 0.1545,
+    byte_time: Positive[Seconds] = 0.01085,
+    frame: FrameSize = 1.0,
+    processing: NotNegative[Seconds] = 0.09,
+    payload: Count = 0.0,
+    authentication: Count = 0.0,
+    source_level_db: Decibels = 184.0,
+    frequency: Positive[Hertz] = 26000.0,
+    bandwidth: Positive[Hertz] = 16000.0,
+    half_db: Decibels = -0.09,
+    width_db: Positive[Decibels] = 0.72,
+    capture_db: Decibels = 6.0,
+    spreading: Exponent = 1.5,
+    sound_speed: NotNegative[MetersPerSecond] = 0.0,
+    temperature_celsius: Celsius = 12.0,
+    salinity: Salinity = 35.0,
+    acidity: Acidity = 8.1,
+    water_depth: Deep = 20.0,
+    shipping: Level = 0.5,
+    wind_speed: NotNegative[MetersPerSecond] = 5.0,
+    platform_noise_db: Decibels = 0.0,
+    loss: Share = 0.0,
+    burst: NotNegative[Seconds] = 0.0,
+    max_range: Positive[Meters] = 3500.0,
+) -> Medium:
+    """Reduce a modem, the water and the noise to what each message needs.
+
+    noise = N(f) + 10 log10(B) + platform,   alpha by Francois & Garrison,   c by Mackenzie unless it is given
+
+    Args:
+        dt: [s] not used.
+        overhead: [s] on the air before the first byte.
+        byte_time: [s] on the air for each byte.
+        frame: [-] bytes come in multiples of it.
+        processing: [s] from the end of the sound to its being read.
+        payload: [-] bytes of a message; 0: as many as the codec needs for what is said, and the code.
+        authentication: [-] bytes of a code that proves who sent a message.
+        source_level_db: [dB] re 1 uPa at 1 m; modems of one network are alike.
+        frequency: [Hz] in the middle of the band.
+        bandwidth: [Hz] B.
+        half_db: [dB] signal to noise at which half of the packets are lost.
+        width_db: [dB] of that slope.
+        capture_db: [dB] by which a packet must be stronger than one that overlaps it; a large one: both are lost.
+        spreading: [-] k of k 10 log10(r): 2 spherical, 1.5 the usual compromise.
+        sound_speed: [m/s] c; 0: from temperature, salinity and water_depth.
+        temperature_celsius: [-] deg C.
+        salinity: [-] practical.
+        acidity: [-] pH.
+        water_depth: [m] at which the sound goes.
+        shipping: [-] 0 no ships to 1 many.
+        wind_speed: [m/s]
+        platform_noise_db: [dB] that the listener's own vehicle adds to the noise.
+        loss: [-] share of the time in which a link is out.
+        burst: [s] mean length of an outage; 0: each message is lost by itself.
+        max_range: [m] beyond which nothing is heard.
+
+    Returns:
+        The numbers.
+    """
+    noise = ambient_noise(frequency, shipping, wind_speed) + DECIBEL * float(log(bandwidth)) + platform_noise_db
+    return Medium(
+        overhead,
+        byte_time,
+        frame,
+        processing,
+        sound_speed if sound_speed > 0.0 else mackenzie(temperature_celsius, salinity, water_depth),
+        francois_garrison(frequency, temperature_celsius, salinity, water_depth, acidity),
+        spreading,
+        source_level_db,
+        noise,
+        half_db,
+        width_db,
+        loss,
+        burst,
+        max_range,
+        capture_db,
+        payload,
+        authentication,
+    )
