@@ -4,6 +4,8 @@
 #   make check        style, types, layers, docstrings, spelling
 #   make bench        speed of the named workloads
 #   make pictures     draw the pictures of docs/theory/gallery.md again
+#   make screens      take the pictures of the report and the laboratory again; needs Chromium and pdftoppm
+#   make docs         build the site of these pages, without a network, into .cache/site
 #   make size         what an installation without the development tools weighs
 #   make constraints  resolve the versions again (on the oldest Python)
 #   make clean        remove what the targets made
@@ -35,7 +37,7 @@ ifneq ($(MADE_IN)/$(MADE_FROM),$(CURDIR)/$(WANTED))
 REMAKE := remake
 endif
 
-.PHONY: demo test test-slow test-all check bench pictures size constraints clean setup setup-dev remake
+.PHONY: demo test test-slow test-all check bench docs screens pictures size constraints clean setup setup-dev remake
 .DEFAULT_GOAL := demo
 
 demo: setup
@@ -69,6 +71,12 @@ check: setup-dev
 
 bench: setup-dev
 	@$(BIN)/python -m benchmarks
+
+docs: setup-dev
+	@$(BIN)/python docs/site/build.py
+
+screens: setup-dev
+	@$(BIN)/python examples/screens.py
 
 pictures: setup
 	@$(BIN)/python examples/gallery.py

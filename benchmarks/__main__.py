@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from benchmarks import batch, families, first_compilation, single_mission, users_law, whole_command
+from benchmarks import batch, families, first_compilation, laboratory, single_mission, users_law, whole_command
 from benchmarks.calibration import Calibration
 from benchmarks.display import Display
 from benchmarks.reference import measure as reference
@@ -17,6 +17,7 @@ from benchmarks.timing import Effort
 WORKLOADS = {
     "mission": single_mission.measure,
     "command": whole_command.measure,
+    "lab": laboratory.measure,
     "compilation": first_compilation.measure,
     "law": users_law.measure,
     "batch": batch.measure,

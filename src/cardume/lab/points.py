@@ -9,7 +9,7 @@ from cardume.missions.planning import reference_path
 from cardume.paths.offset import offset_path
 from cardume.paths.outline import outline
 
-MOST = 24
+MOST = 12  # few enough to be dragged, and far enough apart for the offsets of a formation
 
 
 def waypoints_along(mission: Mission) -> list[list[float]]:

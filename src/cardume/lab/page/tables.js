@@ -19,7 +19,7 @@ const named = (name, color) => {
   head.append(swatch, name);
   return head;
 };
-const signed = (value) => `${value > 0 ? "+" : value < 0 ? "−" : "±"}${Math.abs(value).toPrecision(2)}`;
+const signed = (value) => Math.abs(value) < 1e-9 ? "±0" : `${value > 0 ? "+" : value < 0 ? "−" : "±"}${Math.abs(value).toPrecision(2)}`;
 
 export const showVerdict = (flight) => {
   const [word, kind] = flight.verdict;
