@@ -10,6 +10,7 @@ from benchmarks import batch, families, first_compilation, laboratory, single_mi
 from benchmarks.calibration import Calibration
 from benchmarks.display import Display
 from benchmarks.reference import measure as reference
+from benchmarks.reference import sizes
 from benchmarks.row import Row, load, run_record, save
 from benchmarks.table import compare, show
 from benchmarks.timing import Effort
@@ -23,6 +24,7 @@ WORKLOADS = {
     "batch": batch.measure,
     "families": families.measure,
     "reference": reference.measure,
+    "sizes": sizes.measure,
 }
 WIDTH = 120  # of tables where there is no terminal
 SMOKE_STEPS = 400  # of the calibration loop

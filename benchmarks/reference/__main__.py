@@ -4,4 +4,4 @@ import sys
 
 from benchmarks.__main__ import main
 
-main(["--only", "reference", *sys.argv[1:]])
+main(["--only", "reference", "--only", "sizes", *sys.argv[1:]])

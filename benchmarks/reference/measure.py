@@ -8,6 +8,8 @@ from functools import partial
 from benchmarks.calibration import VEHICLE_STEPS
 from benchmarks.reference import native
 from benchmarks.reference.numpy_across import Missions
+from benchmarks.reference.pvs import CASE as PVS
+from benchmarks.reference.pvs import pvs_work, why_no_pvs
 from benchmarks.reference.workload import kernel_work, reference_plans
 from benchmarks.row import RATE, TIMES, Row
 from benchmarks.timing import Effort, Progress, Sample, Work, take_turns
@@ -18,11 +20,16 @@ from cardume.simulation.warming import warm_up
 SECONDS = 30.0
 MOST_MILLISECONDS = 8.0  # one mission alone
 AS_C = {"C, scalar": 4.0, "C, side by side": 1.3}  # times as fast, at least
+USERS_LAWS = {
+    "for_lanes": ("with a user's law for lanes", 0.9),
+    "with_an_if": ("with a user's law without lanes", 0.7),
+}
+USERS_SECONDS = 10.0
 THREADS = 2
 FEW, MANY = 16, 64  # missions
 ALONE, SCALAR, LANES = "cardume, one mission alone", "cardume, scalar", "cardume, lanes"
 C_ALONE, C_SCALAR, C_VECTOR = "C, one mission alone", "C, scalar", "C, side by side"
-NUMPY = "NumPy, 512 missions at once, their first 30 s"
+NUMPY = "NumPy, 512 missions, 30 s"
 
 
 def measure(effort: Effort, progress: Progress) -> Iterator[Row]:
@@ -32,10 +39,16 @@ def measure(effort: Effort, progress: Progress) -> Iterator[Row]:
     if HAS_LANES:
         compile_lanes(plans[0], progress)
     works = cardume_works(plans) | (c_works(plans, progress) if native.why_not() is None else {}) | numpy_work(effort)
+    if why_no_pvs() is None:
+        works[PVS] = pvs_work(effort)
     samples = take_turns({name: work for name, (work, _) in works.items()}, SECONDS, effort, progress)
     for name, (_, steps) in works.items():
         yield (_alone if name in (ALONE, C_ALONE) else _many)(name, samples[name], steps)
+    if reason := why_no_pvs():
+        yield Row(workload="reference", case=PVS, value=math.nan, unit=RATE, remark=f"not measured: {reason}")
     yield from _ratios(samples, {name: steps for name, (_, steps) in works.items()})
+    if HAS_LANES:
+        yield from _users_laws(plans, effort, progress)
 
 
 def cardume_works(plans: Sequence[Plan]) -> dict[str, tuple[Work, int]]:
@@ -128,6 +141,19 @@ def _ratios(samples: Mapping[str, Sample], steps: Mapping[str, int]) -> Iterator
         best = min(rivals, key=lambda name: samples[name].cpu / steps[name])
         theirs = samples[best], steps[best]
         yield as_fast(case, (samples[LANES], steps[LANES]), theirs, AS_C.get(kind))
+
+
+def _users_laws(plans: Sequence[Plan], effort: Effort, progress: Progress) -> Iterator[Row]:
+    """The lanes with a user's guidance law in the place of ours, one that has lanes and one that is called for each."""
+    works = {"ours": kernel_work(plans, THREADS, lanes=True)}
+    for law in USERS_LAWS:
+        given = f"guidance={{law: 'benchmarks.reference.users_laws:{law}', lookahead: {{uniform: [3 m, 8 m]}}}}"
+        theirs = reference_plans(len(plans), effort, [given])
+        works[law] = kernel_work(theirs, THREADS, lanes=True)
+    samples = take_turns(works, USERS_SECONDS, effort, progress)
+    steps = steps_of(plans)
+    for law, (case, target) in USERS_LAWS.items():
+        yield as_fast(case, (samples[law], steps), (samples["ours"], steps), target)
 
 
 def as_fast(case: str, ours: tuple[Sample, int], theirs: tuple[Sample, int], target: float | None) -> Row:

@@ -10,7 +10,8 @@ import pytest
 from numba import config
 
 from benchmarks.calibration import Calibration
-from benchmarks.reference import native
+from benchmarks.reference import native, users_laws
+from benchmarks.reference.fleets import fleet_plans
 from benchmarks.reference.numpy_across import Missions
 from benchmarks.reference.workload import reference_plans
 from benchmarks.timing import Effort
@@ -156,3 +157,19 @@ def test_missions_differ_in_what_is_drawn() -> None:
     drawn = native.missions_of(plans())
     for name in drawn.dtype.names or ():
         assert len(set(drawn[name].tolist())) == MISSIONS, name
+
+
+def test_one_users_law_has_lanes_and_the_other_is_called_for_each() -> None:
+    if config.DISABLE_JIT:
+        pytest.skip("nothing is compiled")
+    assert users_laws.for_lanes.handle(lanes=True) > 0
+    assert users_laws.with_an_if.handle(lanes=True) < 0
+
+
+@pytest.mark.parametrize("size", [3, 10, 60])
+def test_a_fleet_of_any_size_hears_two_each(size: int) -> None:
+    (plan,) = fleet_plans(size, 1, Whole(Calibration(1)))
+    hears = np.asarray(plan.hears)
+    assert len(plan.vehicles) == size
+    assert hears.sum(1).tolist() == [1, *[2] * (size - 2), 1]
+    assert set(plan.vehicles[0].laws) == set(plan.vehicles[-1].laws)

@@ -26,10 +26,12 @@ CASES = {
         "cardume, scalar, 2 threads",
         *(["C, one mission alone", "C, scalar, 2 threads", "C, side by side"] if shutil.which("gcc") else []),
         "NumPy",
+        "PythonVehicleSimulator",
         "beside C, scalar",
         "beside C, side by side",
         "beside NumPy",
     ],
+    "sizes": ["3 vehicles", "10 vehicles", "10 vehicles beside 3", "2 missions", "4 missions", "beside 2"],
     "families": ["ideal sensors", "observer", "crab", "coordination", "noisy", "bernoulli", "medusa"],
 }
 
