@@ -13,7 +13,7 @@ from typing import Any
 from benchmarks.timing import Effort, Work
 
 PACKAGE = "python_vehicle_simulator"
-CASE = "PythonVehicleSimulator, one Otter"
+CASE = "PythonVehicleSimulator, Otter"
 STEP = 0.05  # [s]
 SECONDS = 60.0  # its log grows by copying, so that longer flights are slower
 

@@ -16,7 +16,7 @@ from benchmarks.reference.numpy_across import Missions
 from benchmarks.reference.workload import reference_plans
 from benchmarks.timing import Effort
 from cardume.simulation.flight import Metrics
-from cardume.simulation.fly import Flown, fly
+from cardume.simulation.fly import Flown, fly, fly_batch
 from cardume.simulation.plan import Plan
 from cardume.simulation.recording import CHANNELS, MESSAGES
 from cardume.simulation.results import metrics_of
@@ -173,3 +173,11 @@ def test_a_fleet_of_any_size_hears_two_each(size: int) -> None:
     assert len(plan.vehicles) == size
     assert hears.sum(1).tolist() == [1, *[2] * (size - 2), 1]
     assert set(plan.vehicles[0].laws) == set(plan.vehicles[-1].laws)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+def test_lanes_fly_it_to_the_last_bit() -> None:
+    for which, ours in enumerate(fly_batch(plans()[:8], lanes=True)):
+        assert np.array_equal(ours.tables.log, flown(which).tables.log, equal_nan=True)
+        assert np.array_equal(ours.tables.histograms, flown(which).tables.histograms)
