@@ -171,11 +171,12 @@ def as_fast(case: str, ours: tuple[Sample, int], theirs: tuple[Sample, int], tar
     clocks = [per * b.wall / a.wall for a, b in zip(mine.taken, other.taken, strict=True)]
     threads = mine.threads / other.threads
     others = f"best runs {per * other.cpu / mine.cpu:.2f} x, by the clock {statistics.median(clocks):.2f} x"
+    more = f", on {threads:.0f} times the threads" if threads > 1.0 else ""
     return Row(
         workload="reference",
         case=case,
         value=statistics.median(pairs),
         unit=TIMES,
         target=target,
-        remark=f"processor time of pairs of runs, the middle one; {others}{f', on {threads:.0f} times the threads' if threads > 1.0 else ''}",
+        remark=f"processor time of pairs of runs, the middle one; {others}{more}",
     )
