@@ -3,7 +3,7 @@
 #   make test         the fast tests; make test-slow the others; make test-all both
 #   make check        style, types, layers, docstrings, spelling
 #   make bench        speed of the named workloads
-#   make pictures     draw the pictures of docs/theory/gallery.md again
+#   make pictures     draw the pictures of the gallery and of the worked studies again
 #   make screens      take the pictures of the report and the laboratory again; needs Chromium and pdftoppm
 #   make docs         build the site of these pages, without a network, into .cache/site
 #   make size         what an installation without the development tools weighs
@@ -78,8 +78,9 @@ docs: setup-dev
 screens: setup-dev
 	@$(BIN)/python examples/screens.py
 
-pictures: setup
+pictures: setup-dev
 	@$(BIN)/python examples/gallery.py
+	@$(BIN)/python examples/studies.py
 
 size: setup
 	@$(BIN)/python .ci/size.py

@@ -256,7 +256,9 @@ def _say_next(request: Request, directory: Path, results: "Results") -> None:
     more = ["cardume", "study", request.mission, "--runs", str(4 * len(results.seeds)), *_same(request)]
     figure = next(iter(figures_that_matter(results)), "worst")
     paper = ["cardume", "report", str(directory), "--figure", figure, "--format", "pdf", "--width", "88mm"]
-    click.echo(f"\nNext\n  {shlex.join(more)}\n      half the width of every interval")
+    click.echo("\nNext")
+    if len(results.seeds) > 1:
+        click.echo(f"  {shlex.join(more)}\n      half the width of every interval")
     click.echo(f"  {shlex.join(paper)}\n      a figure for a paper")
     click.echo(f"  python -c {_quoted(python)}\n      every number of every run, in xarray")
 

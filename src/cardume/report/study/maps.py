@@ -131,7 +131,13 @@ def _draw_cells(axes: Any, one: Map, scales: list[Scale], limits: list[float], f
         dark = limits[0] + 0.55 * (limits[1] - limits[0])
         for (row, column), value in np.ndenumerate(values):
             if np.isfinite(value):
-                how = {"ha": "center", "va": "center", "fontsize": 6.0, "color": "white" if value < dark else "black"}
+                how = {
+                    "ha": "center",
+                    "va": "center",
+                    "fontsize": 6.0,
+                    "zorder": 6,
+                    "color": "white" if value < dark else "black",
+                }
                 axes.text(x.places[column], y.places[row], form.format(value), **how)
     return drawn
 

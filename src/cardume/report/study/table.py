@@ -38,7 +38,8 @@ def set_block(block: Block, width: int) -> str:
             kept.remove(place)
     widths = rooms()
     gap = 2 if sum(widths) + 2 * len(widths) + longest <= width else 1
-    first = max(NARROWEST, min(longest, width - sum(widths) - gap * len(widths)))
+    wanted = max(longest, len(block.title) if len(block.title) <= READABLE else 0)
+    first = max(NARROWEST, min(wanted, width - sum(widths) - gap * len(widths)))
 
     def line(name: str, texts: list[str]) -> str:
         parts = [f"{' ' * gap}{text:>{room}}" for text, room in zip(texts, widths, strict=True)]

@@ -57,7 +57,7 @@ def _flown(results: Results) -> str:
     runs = int(np.sum((results.status != NOT_FLOWN).any(axis=tuple(range(len(results.swept))))))
     of = f" of {results.status.size}" if results.num_flown < results.status.size else ""
     seeds = "the same seeds for all" if results.num_cases > 1 else f"seeds {results.seeds[0]} to {results.seeds[-1]}"
-    cases = f"{results.num_cases} cases with {runs} runs each" if results.num_cases > 1 else f"{runs} runs"
+    cases = f"{results.num_cases} cases with {_runs(runs)} each" if results.num_cases > 1 else _runs(runs)
     whole = f"{results.num_flown}{of} missions were flown: {cases}, {seeds}."
     return f"{whole} What is missing is flown with --resume." if of else whole
 
@@ -75,6 +75,10 @@ def _failed(results: Results) -> str:
     if refused:
         told.append(f"{_missions(refused)} could not be flown with what was drawn.")
     return " ".join(told)
+
+
+def _runs(count: int) -> str:
+    return "1 run" if count == 1 else f"{count} runs"
 
 
 def _missions(count: int) -> str:
@@ -102,6 +106,9 @@ def _cases(results: Results) -> Iterator[str]:
     share, low, high = chances_of_all(results)
     sure, not_sure = int(np.sum(low >= WANTED)), int(np.sum(high < WANTED))
     runs = int(np.max(np.sum(results.is_judged, axis=-1)))
+    if runs == 1:
+        yield f"All that is required holds in {int(np.nansum(share))} of {results.num_cases} cases, of one run each."
+        return
     left = results.num_cases - sure - not_sure
     rest = f"; of {left} it cannot be said with {runs} runs" if left else ""
     yield (
