@@ -28,6 +28,26 @@ def displacement(motion: Motion, dt: float) -> tuple[float, float]:
 
 
 @compiled
+def swaying(motion: Motion, sway: float) -> Motion:
+    """The motion with a sway that was not measured.
+
+    Args:
+        motion: as measured.
+        sway: [m/s] to add to it.
+    """
+    return Motion(
+        motion.heading,
+        motion.yaw_rate,
+        motion.surge,
+        motion.sway + sway,
+        motion.north,
+        motion.east,
+        motion.current_north,
+        motion.current_east,
+    )
+
+
+@compiled
 def way_through_water(motion: Motion, dt: float) -> tuple[float, float]:
     """The same without the current: R(psi + r dt / 2) (u, v) dt.
 

@@ -17,10 +17,11 @@ from cardume.laws import (
     Seconds,
     Unit,
 )
+from cardume.maths import to_ned
 from cardume.maths.history import push, recall
 from cardume.onboard.estimation.position.base import position_law
 from cardume.onboard.estimation.position.belief import Doubts, Moment, aged
-from cardume.onboard.estimation.position.dead_reckoning import way_through_water
+from cardume.onboard.estimation.position.dead_reckoning import swaying, way_through_water
 from cardume.onboard.estimation.position.past_fixes import FIXES_WIDTH, begin, get_belief, take
 from cardume.signals import Fix, Motion, NavigationEstimate
 
@@ -53,6 +54,7 @@ def kalman_replay(
     current_sigma: NotNegative[MetersPerSecond] = 0.3,
     scale_sigma: NotNegative[Number] = 0.0,
     heading_sigma: NotNegative[Radians] = 0.0,
+    sway_time: NotNegative[Seconds] = 0.0,
     fix_sigma: Positive[Meters] = 1.0,
     gate: Positive[Number] = 16.0,
     patience: NotNegative[Number] = 5.0,
@@ -80,13 +82,15 @@ def kalman_replay(
         current_sigma: [m/s] of the current at first, per axis.
         scale_sigma: [-] of the scale error s at first; 0: the speed is taken as measured.
         heading_sigma: [rad] of the heading error b at first; 0: the heading is taken as measured.
+        sway_time: [s] k of a hull that sways by v = -k u r in a turn, taken for its sway where none is measured; (mass
+            and added mass in surge) over the linear drag in sway, 0.9 s for MEDUSA.
         fix_sigma: [m] of a fix that does not tell its own covariance, per axis.
         gate: [-] largest believable squared innovation over its variance; 16 is exceeded by 0.03 % of good fixes.
         patience: [-] how many fixes in a row are not believed before the filter starts again.
 
     Returns:
         The position [m] with its covariance [m^2], the current [m/s] that makes the measured velocity through the water
-        that over ground, c + ((1 + s) R(b) - 1) V_m; and the next memory.
+        that over ground, c + ((1 + s) R(b) - 1) V_m and the sway that was not measured; and the next memory.
 
     Source: Larsen, Andersen, Ravn & Poulsen (1998), the recalculation that their methods approximate; theory row II.
     """
@@ -114,19 +118,24 @@ def kalman_replay(
         then = memory.tick - where(is_known, old, 0.0)
         north, east = recall(memory.norths, REMEMBERED, then), recall(memory.easts, REMEMBERED, then)
         take(memory.fixes, fix, Moment(then, north, east, 0.0 * then), is_known, doubts, dt)
+    moved, drift_north, drift_east = motion, 0.0 * motion.north, 0.0 * motion.east
+    if some(sway_time > 0.0):
+        sway = where(motion.sway == 0.0, -sway_time * motion.surge * motion.yaw_rate, 0.0)
+        moved = swaying(motion, sway)
+        drift_north, drift_east = to_ned(motion.heading, 0.0 * sway, sway)
     now = Moment(memory.tick, memory.way_north, memory.way_east, 0.0 * memory.tick)
     believed = aged(get_belief(memory.fixes, 0), now, doubts, dt)
     mean, covariance = believed.mean, believed.covariance
     estimate = NavigationEstimate(
         mean.north,
         mean.east,
-        mean.current_north + mean.scale * motion.north - mean.turn * motion.east,
-        mean.current_east + mean.scale * motion.east + mean.turn * motion.north,
+        mean.current_north + mean.scale * motion.north - mean.turn * motion.east + drift_north,
+        mean.current_east + mean.scale * motion.east + mean.turn * motion.north + drift_east,
         covariance.pp_nn,
         covariance.pp_ne,
         covariance.pp_ee,
     )
-    ahead, aside = way_through_water(motion, dt)
+    ahead, aside = way_through_water(moved, dt)
     after = Replayed(
         memory.north,
         memory.east,
