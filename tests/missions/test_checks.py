@@ -506,6 +506,19 @@ def test_fixes_older_than_what_is_remembered_leave_the_predicted_bias() -> None:
     assert lag == pytest.approx(0.5 * (5.0 - 2.55), abs=0.01)
 
 
+def test_a_filter_leaves_out_fixes_older_than_what_it_remembers() -> None:
+    said = find(LATE, "warning", "tick", "position={law: kalman_replay}", "tick=0.01 s")
+    assert "kalman_replay remembers 255 ticks, 2.55 s: what is older is left out" in said.message
+    assert not told(LATE, "tick", "position={law: kalman_replay}")
+
+
+def test_a_current_is_taken_only_from_a_law_that_estimates_one() -> None:
+    said = find(ALONE, "warning", "current_observer.law", "current_observer={law: from_position}")
+    assert "takes the current from its position law, and direct estimates none" in said.message
+    assert said.suggestion == "position.law=kalman_replay"
+    assert not told(ALONE, "current_observer.law", "current_observer={law: from_position}", said.suggestion)
+
+
 def test_a_vehicle_without_fixes_drifts_as_far_as_predicted() -> None:
     overrides = ["vehicles.a.sensors.usbl=none", "path.length=5 km"]
     assert "0.1 m/s, 42 m by the end" in find(TEAM, "warning", "vehicles.b.depth", *overrides).message
