@@ -74,7 +74,7 @@ def spiral(
 
 
 def zigzag(target: np.ndarray, times: np.ndarray, *, width: float, astern: float, speed_max: float) -> np.ndarray:
-    """To and fro across the target's course, behind it.
+    """From side to side across the target's course, behind it.
 
     Args:
         target: (n, 2) [m]
