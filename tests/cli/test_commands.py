@@ -5,6 +5,7 @@ import io
 import json
 import os
 import resource
+import signal
 import subprocess
 import sys
 import time
@@ -171,10 +172,39 @@ def test_a_law_without_equation_or_source_is_described_too() -> None:
     assert describe(law) == {"name": "mine", "summary": "", "equation": "", "parameters": [], "source": ""}
 
 
+def test_list_of_paths_shows_their_keys(cardume: Cardume) -> None:
+    found = {entry["name"]: entry for entry in json.loads(cardume("list", "paths", "--json").out)}
+    assert {"line", "arc", "circle", "lawnmower", "waypoints", "spline", "file"} <= set(found)
+    keys = {key["name"]: key for key in found["lawnmower"]["keys"]}
+    assert keys["leg"]["needed"]
+    assert not keys["turn"]["needed"]
+    assert "leg: length of a leg; a number, as '1 m', above 0 m" in cardume("list", "paths").out
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_convert_and_leaves_what_was_there(
+    number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cardume: Cardume
+) -> None:
+    from cardume.missions import converting
+
+    def slow(_request: object) -> None:
+        os.kill(os.getpid(), number)
+        time.sleep(5.0)
+
+    monkeypatch.setattr(converting, "convert", slow)
+    target = tmp_path / "there.yaml"
+    target.write_text("mine", encoding="utf-8")
+    code, _, err = cardume("convert", "paper/figure-5", str(target), "--force")
+    assert code == 128 + number
+    assert "interrupted; nothing was kept" in err
+    assert target.read_text(encoding="utf-8") == "mine"
+
+
 def test_list_as_json_and_quietly(stage: Stage, cardume: Cardume, laws: None) -> None:
     found = json.loads(cardume("list", "guidance", "--json").out)
     assert found[0]["parameters"][0] == {
         "name": "lookahead",
+        "meaning": "d = 5 by default.",
         "default": 5.0,
         "unit": "m",
         "low": 0.0,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cardume.cli.options import allow_code_option, json_option, quiet_option, seed_option, set_option
+from cardume.cli.stopping import stoppable
 from cardume.errors import InputError
 from cardume.units import parse_quantity, printable
 
@@ -78,6 +79,7 @@ class LatLon(click.ParamType):
 @allow_code_option
 @quiet_option
 @json_option
+@stoppable
 def convert(**given: Any) -> int:
     """Convert IN, a mission, a path file, or a run and its log, to OUT: its ending says the format.
 

@@ -1,11 +1,12 @@
 """`cardume lab`: a page on which missions are flown again while sliders move."""
 
+import json
 import sys
 from pathlib import Path
 
 import click
 
-from cardume.cli.options import allow_code_option, quiet_option
+from cardume.cli.options import allow_code_option, json_option, quiet_option
 from cardume.errors import InputError
 
 FIRST = "paper/figure-5"
@@ -23,8 +24,15 @@ FIRST = "paper/figure-5"
 @click.option("--no-browser", is_flag=True, help="Only print the address.")
 @allow_code_option
 @quiet_option
+@json_option
 def lab(
-    mission: str | None, folder: Path | None, port: int, no_browser: bool, allow_code: tuple[Path, ...], quiet: bool
+    mission: str | None,
+    folder: Path | None,
+    port: int,
+    no_browser: bool,
+    allow_code: tuple[Path, ...],
+    quiet: bool,
+    as_json: bool,
 ) -> int:
     """Open the laboratory: a page in the browser, served by this machine to this machine only.
 
@@ -41,6 +49,7 @@ def lab(
     from cardume.missions.opening import nothing_there
     from cardume.report.page.page import library as plotly
 
+    is_talkative = not quiet and not as_json
     plotly()  # what draws is there, or it is said now
     name, place = mission or FIRST, Path.cwd()
     if name not in library.names() or Path(name).is_file():
@@ -53,15 +62,18 @@ def lab(
         chosen.file(name)
 
     def ready(address: str) -> None:
-        click.echo(address if quiet else f"The laboratory is at {address}")
-        if not quiet:
+        if as_json:
+            click.echo(json.dumps({"address": address, "folder": str(chosen.root)}))
+        else:
+            click.echo(address if quiet else f"The laboratory is at {address}")
+        if is_talkative:
             click.echo(f"It reads and writes {chosen} only. Ctrl-C ends it.")
         sys.stdout.flush()
         if not no_browser:
             _open(address)
 
     serve(chosen, name, version(), port=port, allow_code=tuple(allow_code), ready=ready)
-    if not quiet:
+    if is_talkative:
         click.echo("\nThe laboratory has ended.")
     return 0
 

@@ -25,13 +25,14 @@ KEYS = {
 }
 
 
-@click.command("list", short_help="List laws, missions, metrics, formats.")
-@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|formats|MODULE:LAW]")
+@click.command("list", short_help="List laws, missions, metrics, paths, formats.")
+@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|paths|formats|MODULE:LAW]")
 @allow_code_option
 @quiet_option
 @json_option
 def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
-    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, or the path file formats.
+    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, the types of paths, or the
+    formats of path files.
 
     A law of yours is shown by its name in a mission, as my_laws:my_law, its folder given by --allow-code.
     """
@@ -43,6 +44,8 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         found = _metrics()
     elif what == "formats":
         found = _formats()
+    elif what == "paths":
+        found = _paths()
     elif ":" in what:
         found = _users_law(what, allow_code)
     else:
@@ -56,7 +59,7 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         for entry in found:
             _say(entry)
         if what is None:
-            click.echo("\ncardume list FAMILY, list missions, list metrics, list formats say more.")
+            click.echo("\ncardume list FAMILY, list missions, list metrics, list paths, list formats say more.")
     return 0
 
 
@@ -89,7 +92,7 @@ def _about(family: str, law: Any) -> str:
 def _laws(family: str) -> list[dict[str, Any]]:
     families = _every_law()
     if family not in families:
-        names = [*families, "missions", "metrics", "formats"]
+        names = [*families, "missions", "metrics", "paths", "formats"]
         hint = nearest(family, names) or "."
         raise click.UsageError(f"There is no family '{family}'{hint} There are {', '.join(names)}")
     return [_describe(law) for law in families[family].values()]
@@ -124,6 +127,31 @@ def _metrics() -> list[dict[str, Any]]:
     ]
 
 
+def _paths() -> list[dict[str, Any]]:
+    from dataclasses import MISSING
+
+    from cardume.missions.route import PATHS
+    from cardume.missions.schema import fields_of
+    from cardume.missions.wording import wanted
+
+    return [
+        {
+            "name": name,
+            "summary": (record.__doc__ or "").strip().partition("\n")[0],
+            "keys": [
+                {
+                    "name": field.key,
+                    "meaning": field.doc,
+                    "valid": wanted(field.kind),
+                    "needed": field.default is MISSING and field.written is None,
+                }
+                for field in fields_of(record)
+            ],
+        }
+        for name, record in PATHS.items()
+    ]
+
+
 def _formats() -> list[dict[str, Any]]:
     from cardume.missions.formats.content import FORMATS
 
@@ -143,6 +171,9 @@ def _say(entry: Mapping[str, Any]) -> None:
         click.echo(f"      {line.strip()}")
     for parameter in entry.get("parameters", ()):
         click.echo(f"    {_one_line(parameter)}")
+    for key in entry.get("keys", ()):
+        must = "" if key["needed"] else " (may be left out)"
+        click.echo(_indented(f"{key['name']}: {key['meaning']}; {key['valid']}{must}", width))
     if "key" in entry and "laws" not in entry:
         click.echo(_indented(f"chosen under the key {entry['key']}", width))
     if entry.get("source"):

@@ -103,7 +103,7 @@ def _run_safely(arguments: Sequence[str] | None) -> int:
     except (click.Abort, KeyboardInterrupt):
         return _complain("interrupted; nothing was kept", INTERRUPTED)
     except Stopped as stopped:
-        return _complain("interrupted before the flight began; nothing was kept", stopped.exit_code)
+        return _complain("interrupted; nothing was kept", stopped.exit_code)
     except CardumeError as problem:
         return _complain(str(problem), problem.exit_code)
     except MemoryError:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from cardume.cli.options import allow_code_option, json_option, quiet_option
+from cardume.cli.stopping import stoppable
 from cardume.errors import InputError
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ NARROWEST, WIDEST = 2.0, 40.0  # [inch]
 @allow_code_option
 @quiet_option
 @json_option
+@stoppable
 def report(
     run: Path,
     figures: tuple[str, ...],

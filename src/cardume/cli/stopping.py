@@ -1,7 +1,9 @@
 """Ctrl-C and SIGTERM: while a mission flies they end it in good order, at any other time at once."""
 
+import functools
 import signal
 import threading
+from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any
 
@@ -61,3 +63,14 @@ class Stopping:
         self._count += 1
         if not self._is_patient or self._count >= INSISTENT:
             raise Stopped(self.number)
+
+
+def stoppable(command: Callable[..., int]) -> Callable[..., int]:
+    """A command that a signal ends at once and in good order: what it was writing is gone, what was there is whole."""
+
+    @functools.wraps(command)
+    def inner(*given: Any, **named: Any) -> int:
+        with Stopping():
+            return command(*given, **named)
+
+    return inner
