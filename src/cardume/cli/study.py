@@ -120,9 +120,10 @@ def _study(request: Request, stopping: Stopping) -> int:
                 should_stop=stopping.is_asked,
             )
         except BaseException:
-            if not request.resume:
-                with suppress(OSError):
-                    directory.rmdir()  # reserved, and still empty
+            if request.output is None and not request.resume:
+                with suppress(OSError):  # not if anything is in it
+                    directory.rmdir()
+                    directory.parent.rmdir()
             raise
     return _end(request, directory, runs, stopping)
 
