@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from benchmarks import batch, families, first_compilation, laboratory, single_mission, users_law, whole_command
+from benchmarks import batch, families, first_compilation, laboratory, single_mission, studies, users_law, whole_command
 from benchmarks.calibration import Calibration
 from benchmarks.display import Display
 from benchmarks.reference import measure as reference
@@ -25,6 +25,7 @@ WORKLOADS = {
     "families": families.measure,
     "reference": reference.measure,
     "sizes": sizes.measure,
+    "study": studies.measure,
 }
 WIDTH = 120  # of tables where there is no terminal
 SMOKE_STEPS = 400  # of the calibration loop

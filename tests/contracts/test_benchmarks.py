@@ -32,6 +32,7 @@ CASES = {
         "beside NumPy",
     ],
     "sizes": ["3 vehicles", "10 vehicles", "10 vehicles beside 3", "2 missions", "4 missions", "beside 2"],
+    "study": ["figure-5, 2 threads", "figure-5, 2 Dask workers", "Dask, beside threads"],
     "families": ["ideal sensors", "observer", "crab", "coordination", "noisy", "bernoulli", "medusa"],
 }
 
