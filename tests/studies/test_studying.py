@@ -9,7 +9,7 @@ import pytest
 import xarray
 
 import cardume
-from cardume.errors import InputError
+from cardume.errors import InputError, MissionError
 from cardume.missions.available import catalog
 from cardume.missions.drawing import draw
 from cardume.missions.loading import parse_mission
@@ -180,3 +180,62 @@ def test_a_stop_keeps_what_was_complete(monkeypatch: pytest.MonkeyPatch) -> None
     assert flown[: flown.sum()].all()
     assert np.isnan(found["fleet_cross_track_iae"].values[~flown]).all()
     assert ("study", 0, 10) in done
+
+
+TICKS = ("tick={choose: [0.2 s, 0.1 s]}", "plant_step={choose: [0.1 s, 0.2 s]}")
+
+
+def test_a_run_whose_values_do_not_fit_is_refused_and_not_the_study() -> None:
+    """A quarter of the draws: a tick of 0.1 s is no whole multiple of a plant step of 0.2 s."""
+    mission = read(NOISY, *TICKS, SHORT)
+    found = cardume.study(mission, 12, seed=3)
+    for place, seed in enumerate(range(3, 15)):
+        run, why, plain = found.isel(run=place), "", mission
+        try:
+            plain = draw(mission, seed)
+        except MissionError as problem:
+            why = str(problem)
+        assert run["failure"] == why
+        assert run["status"] == (layout.REFUSED if why else layout.FLOWN)
+        alone = np.nan if why else cardume.fly(plain).metrics.worst("cross_track_iae")[0]
+        assert np.array_equal(run["fleet_cross_track_iae"], alone, equal_nan=True)
+    assert set(found["status"].values) == {layout.FLOWN, layout.REFUSED}
+
+
+def test_a_case_that_does_not_fit_is_refused_and_not_the_study() -> None:
+    swept = [override.replace("choose", "sweep") for override in TICKS]
+    found = cardume.study(read(NOISY, *swept, SHORT), 3)
+    assert (found["status"].values == layout.REFUSED).all(axis=-1).tolist() == [[False, False], [False, True]]
+    assert "whole" in found["failure"].values[1, 1, 0]
+
+
+LOST = """
+from cardume.compiler import where
+from cardume.maths import sqrt
+from cardume.onboard.guidance import guidance_law
+from cardume.signals import PathError
+
+@guidance_law
+def lost(error: PathError) -> float:
+    '''Lost.
+
+    Source: own.
+    '''
+    return where(error.cross_track < 2.9, sqrt(-error.cross_track), error.path_course - 1.0)
+"""
+
+
+def test_a_mission_that_fails_in_flight_says_when_and_why(tmp_path: Path) -> None:
+    (tmp_path / "law_that_is_lost.py").write_text(LOST)
+    laws = "guidance={choose: [line_of_sight, {law: 'law_that_is_lost:lost'}]}"
+    (tmp_path / "mission.yaml").write_text(NOISY)
+    how = {"overrides": [laws, SHORT, REQUIRED], "allow_code": [tmp_path]}
+    found = cardume.study(tmp_path / "mission.yaml", 12, seed=1, **how)
+    is_lost = found["drawn.guidance"].values != "line_of_sight"
+    assert 0 < is_lost.sum() < 12
+    assert np.array_equal(found["status"].values, np.where(is_lost, layout.FAILED, layout.FLOWN))
+    assert all("reference of vehicle a" in why for why in found["failure"].values[is_lost])
+    assert (found["failed_at"].values[is_lost] > 0.0).all()
+    assert np.isnan(found["failed_at"].values[~is_lost]).all()
+    assert np.isnan(found["fleet_cross_track_iae"].values[is_lost]).all()
+    assert not found["met"].values[is_lost].any()

@@ -6,9 +6,7 @@ folders that the user allowed, and only from those.
 """
 
 import hashlib
-import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -23,9 +21,8 @@ from cardume.compiler import source_stamp
 from cardume.errors import CardumeError, InputError, MissionError
 from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
-from cardume.missions.mission import Mission
 from cardume.studies.cases import Cases, Place, cases_of
-from cardume.studies.flying import Progress, fly_seeds, num_processors
+from cardume.studies.flying import fly_all, fly_seeds, num_processors
 from cardume.studies.run_table import RunTable, refused
 from cardume.studies.sampling import needed
 from cardume.units import printable
@@ -34,7 +31,6 @@ PATIENCE = 5.0  # [s] for a scheduler to answer
 GLANCE = 0.2  # [s] between two looks at whether to stop
 AHEAD = 2000  # tasks that a scheduler knows of at a time
 RESUME = "what was flown is kept: --resume continues"
-FEW = 8  # missions for each thread, below which the cases of a portion are flown side by side
 
 
 class ClusterError(CardumeError):
@@ -214,38 +210,22 @@ def fly_task(
             " it is flown"
         )
     cases = _cases(task.text, task.allow_code)
-    counter = _Counter(progress)
+    how: dict[str, Any] = {
+        "allow_code": task.allow_code,
+        "threads": threads,
+        "lanes": task.lanes or None,
+        "should_stop": should_stop,
+    }
 
-    def fly(place: Place, threads: int) -> list[RunTable]:
-        return _fly_case(cases.at(place), task, slice(0, len(task.seeds)), threads, should_stop, counter.part)
+    def note(stage: str, done: int, _total: int) -> None:
+        if stage == "compare":
+            progress(done)
 
-    if len(task.seeds) >= FEW * threads or len(task.places) == 1:
-        by_case = [fly(place, threads) for place in task.places if not should_stop()]
-    else:
-        with ThreadPoolExecutor(threads) as pool:
-            by_case = list(pool.map(lambda place: fly(place, 1), task.places))
-    return [table for tables in by_case for table in tables]
-
-
-class _Counter:
-    """Adds up the missions flown in several cases at once."""
-
-    def __init__(self, tell: Callable[[int], None]) -> None:
-        self._tell, self._lock, self._total = tell, threading.Lock(), 0
-
-    def part(self) -> Progress:
-        """What one call of `fly_seeds` is to tell."""
-        before = 0
-
-        def note(stage: str, done: int, _total: int) -> None:
-            nonlocal before
-            if stage == "fly":
-                with self._lock:
-                    self._total += done - before
-                    before = done
-                    self._tell(self._total)
-
-        return note
+    try:
+        missions = [cases.at(place) for place in task.places]
+        return fly_all(missions, task.seeds, chances=task.chances, progress=note, **how)
+    except MissionError:  # of some run or case; the others are flown without it
+        return [table for place in task.places for table in _fly_case(cases, place, task, how)]
 
 
 def fly_remotely(task: Task) -> list[RunTable]:
@@ -273,36 +253,25 @@ def _cases(text: str, allow_code: tuple[str, ...]) -> Cases:
     return cases_of(parse_mission(text, catalog(allow_code), source="the mission of the study"))
 
 
-def _fly_case(
-    mission: Mission,
-    task: Task,
-    some: slice,
-    threads: int,
-    should_stop: Callable[[], bool],
-    part: Callable[[], Progress],
-) -> list[RunTable]:
-    """Fly a case; where the values drawn for some run do not fit one another, that run is refused, not the study."""
-    seeds, chances = task.seeds[some], {key: values[some] for key, values in task.chances.items()}
-    note = part()
+def _fly_case(cases: Cases, place: Place, task: Task, how: Mapping[str, Any]) -> list[RunTable]:
+    """A case, without the runs whose drawn values do not fit one another; these are refused, and not the study."""
     try:
-        table = fly_seeds(
-            mission,
-            seeds,
-            chances=chances,
-            allow_code=task.allow_code,
-            threads=threads,
-            lanes=task.lanes or None,
-            should_stop=should_stop,
-            progress=note,
-        )
-        return [table]
+        mission = cases.at(place)
     except MissionError as problem:
-        note("fly", 0, len(seeds))
-        if len(seeds) == 1:
-            return [refused(mission, int(seeds[0]), str(problem))]
-    middle = some.start + len(seeds) // 2
-    halves = slice(some.start, middle), slice(middle, some.stop)
-    return [table for half in halves for table in _fly_case(mission, task, half, threads, should_stop, part)]
+        some = cases.at(cases.each_option_once()[0])
+        return [refused(some, int(seed), str(problem)) for seed in task.seeds]
+
+    def fly(some: slice) -> list[RunTable]:
+        seeds, chances = task.seeds[some], {key: values[some] for key, values in task.chances.items()}
+        try:
+            return [fly_seeds(mission, seeds, chances=chances, **how)]
+        except MissionError as problem:
+            if len(seeds) == 1:
+                return [refused(mission, int(seeds[0]), str(problem))]
+        middle = some.start + len(seeds) // 2
+        return fly(slice(some.start, middle)) + fly(slice(middle, some.stop))
+
+    return fly(slice(0, len(task.seeds)))
 
 
 def _connected(distributed: Any, address: str) -> Any:
