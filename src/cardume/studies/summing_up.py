@@ -27,7 +27,6 @@ def summarize_study(runs: "xarray.Dataset") -> dict[str, Any]:
         runs: its data set.
     """
     swept = [str(key) for key in runs["status"].dims if key != "run"]
-    places = itertools.product(*(range(runs.sizes[key]) for key in swept))
     means = {
         str(name): means_of(found.transpose(*swept, "run").to_numpy().reshape(-1, runs.sizes["run"]))
         for name, found in runs.data_vars.items()
@@ -36,13 +35,25 @@ def summarize_study(runs: "xarray.Dataset") -> dict[str, Any]:
     about = {
         key: runs.attrs[key] for key in ("version", "title", "sampling", "seed", "runs", "command", "mission_hash")
     }
+    options = [runs[key].values.tolist() for key in swept]
+    status = runs["status"].transpose(*swept, "run").to_numpy().reshape(-1, runs.sizes["run"])
+    met = runs["met"].transpose(*swept, "run", "requirement").to_numpy()
+    required = [str(name) for name in runs["requirement"].values]
+    met = met.reshape(*status.shape, len(required))
     return {
         "cardume_study": FORMAT_VERSION,
         **about,
         "swept": swept,
         "cases": [
-            _case(runs.isel(dict(zip(swept, place, strict=True))), swept, {name: of[k] for name, of in means.items()})
-            for k, place in enumerate(places)
+            {
+                "label": ", ".join(f"{key} {_shown(value)}" for key, value in zip(swept, place, strict=True)),
+                "options": dict(zip(swept, place, strict=True)),
+                "flown": int((status[k] == 1).sum()),
+                "failed": int((status[k] > 1).sum()),
+                "requirements": {name: _share(met[k, status[k] > 0, r]) for r, name in enumerate(required)},
+                "metrics": {name: _metric(of[k]) for name, of in means.items() if math.isfinite(of[k].mean)},
+            }
+            for k, place in enumerate(itertools.product(*options))
         ],
     }
 
@@ -57,23 +68,8 @@ def write_summary(directory: Path, summary: dict[str, Any]) -> None:
     write_file(directory / FILE_NAME, to_json(summary).encode())
 
 
-def _case(runs: "xarray.Dataset", swept: list[str], means: dict[str, Estimate]) -> dict[str, Any]:
-    status = runs["status"].to_numpy()
-    values = {key: runs[key].item() for key in swept}
-    metrics = {name: _metric(mean) for name, mean in means.items()}
-    return {
-        "label": ", ".join(
-            f"{key} {value:.6g}" if isinstance(value, float) else f"{key} {value}" for key, value in values.items()
-        ),
-        "options": values,
-        "flown": int((status == 1).sum()),
-        "failed": int((status > 1).sum()),
-        "requirements": {
-            str(name): _share(runs["met"].to_numpy()[status > 0, k])
-            for k, name in enumerate(runs["requirement"].values)
-        },
-        "metrics": {name: found for name, found in metrics.items() if found["mean"] is not None},
-    }
+def _shown(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _share(met: np.ndarray) -> dict[str, Any]:
