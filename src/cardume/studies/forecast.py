@@ -2,12 +2,15 @@
 
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from cardume.errors import InputError
+from cardume.errors import InputError, MissionError
+from cardume.missions.drawing import draw
 from cardume.missions.mission import Mission
 from cardume.studies.cases import Cases
 from cardume.studies.flying import LANES_FROM, Progress, fly_seeds
@@ -16,6 +19,7 @@ from cardume.studies.run_table import RunTable
 
 GLIMPSE = 2.0  # [s] of a mission, in which every metric that it will have appears
 MOST_PROBED = 200  # options that are looked at
+MOST_TRIED = 100  # runs of which one must be such that its values fit one another
 SAMPLE = 32  # missions flown for their rate, where that takes less than
 SAMPLE_TIME = 1.0  # [s]
 
@@ -107,15 +111,24 @@ class Trial:
             if stage == "compile":
                 self._progress(stage, done, total)
 
-        return fly_seeds(
-            mission,
-            self._seeds[:count] if count <= len(self._seeds) else self._seeds[0] + np.arange(count),
-            chances={key: np.resize(values, count) for key, values in self._chances.items()},
-            allow_code=self._allow_code,
-            threads=1,
-            lanes=lanes or None,
-            progress=note,
-        )
+        runs = np.arange(count) % max(len(self._seeds), 1)
+        seeds = self._seeds[runs] if count <= len(self._seeds) else self._seeds[0] + np.arange(count)
+        how: dict[str, Any] = {"allow_code": self._allow_code, "threads": 1, "lanes": lanes or None, "progress": note}
+        try:
+            return fly_seeds(mission, seeds, chances={k: v[runs] for k, v in self._chances.items()}, **how)
+        except (
+            MissionError
+        ) as problem:  # of values drawn that do not fit one another: the first that do, again and again
+            run = self._first_that_fits(mission, problem)
+            chances = {key: np.full(count, values[run]) for key, values in self._chances.items()}
+            return fly_seeds(mission, np.full(count, self._seeds[run]), chances=chances, **how)
+
+    def _first_that_fits(self, mission: Mission, problem: MissionError) -> int:
+        for run in range(min(len(self._seeds), MOST_TRIED)):
+            with suppress(MissionError):
+                draw(mission, int(self._seeds[run]), {key: float(values[run]) for key, values in self._chances.items()})
+                return run
+        raise problem
 
     def _glimpse(self, mission: Mission) -> RunTable:
         """All of a mission that cannot be so short."""
