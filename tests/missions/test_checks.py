@@ -222,11 +222,15 @@ def test_built_in_missions_have_no_errors_and_only_these_warnings(name: str) -> 
     true_of = {
         "paper/figure-3": {"vehicles.without.compensation.law"},  # what the figure shows
         "kinematic/line": {"duration"},  # it shows the approach, not the whole line
+        "study/row-s": {"duration", "messaging.period"},  # a line long enough, a channel without collisions
+        "study/row-k2": {"duration"},
+        "study/how-often-to-talk": {"coordination.gain", "formation.speed"},  # in the strongest of its currents
         "cadiz": {"coordination.gain", "path"},  # slow: in the inner arc, 0.23 m/s in a current of 0.1 m/s
         **{survey: {"duration"} for survey in library.names() if survey.startswith("survey/")},  # its 400 s are theirs
     }
-    assert {finding.level for finding in found} <= {"warning"}, found
-    assert {finding.key for finding in found} <= true_of.get(name, set()), found
+    swept_too_far = {"study/row-k2": {"current_observer.k1"}}.get(name, set())  # until it fails: that is the question
+    assert {finding.key for finding in found if finding.level == "error"} <= swept_too_far, found
+    assert {finding.key for finding in found} - swept_too_far <= true_of.get(name, set()), found
 
 
 def test_findings_are_frozen_and_errors_come_first() -> None:

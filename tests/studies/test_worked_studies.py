@@ -32,7 +32,7 @@ def rows(page: str, table: str) -> list[list[float]]:
     text = (
         (TUTORIALS / page).read_text(encoding="utf-8").partition(f"<!-- table: {table} -->\n")[2].partition("\n\n")[0]
     )
-    found = [re.findall(r"\d+(?:\.\d+)?", line.replace("k1", "")) for line in text.splitlines()[2:]]
+    found = [re.findall(r"\d+(?:\.\d+)?", line.replace("1/s", "")) for line in text.splitlines()[2:]]
     return [[float(number) for number in numbers] for numbers in found]
 
 
