@@ -15,7 +15,7 @@ from PIL import Image
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs" / "pictures"
 PROGRAM = [sys.executable, "-c", "from cardume.cli.main import main; main()"]
-PAGES, GAP = (0, 1, 2), 10  # of the printed report, and pixels between them
+PAGES, GAP = (0, 1, 3), 10  # of the printed report, and pixels between them
 COLORS = 128  # of a picture
 SCREENS = {"desk": (1280, 800, False), "dark": (1280, 800, True), "phone": (390, 844, False)}
 LOSSY = """
