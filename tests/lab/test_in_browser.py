@@ -107,6 +107,8 @@ def test_each_slider_moves_the_drawn_track(page: Page) -> None:
         page.run("delete document.body.dataset.refused")
         first = page.run(DRAWN)
         move(page, key, 0.75)
+        if page.run(DRAWN) == first:
+            move(page, key, 0.25)  # a limit may bind on one side only
         assert page.run("return document.body.dataset.refused") is None, key
         if page.run(DRAWN) == first:
             idle.append(key)
