@@ -6,7 +6,17 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from benchmarks import batch, families, first_compilation, laboratory, single_mission, studies, users_law, whole_command
+from benchmarks import (
+    batch,
+    families,
+    first_compilation,
+    laboratory,
+    many,
+    single_mission,
+    studies,
+    users_law,
+    whole_command,
+)
 from benchmarks.calibration import Calibration
 from benchmarks.display import Display
 from benchmarks.reference import measure as reference
@@ -22,6 +32,7 @@ WORKLOADS = {
     "compilation": first_compilation.measure,
     "law": users_law.measure,
     "batch": batch.measure,
+    "many": many.measure,
     "families": families.measure,
     "reference": reference.measure,
     "sizes": sizes.measure,

@@ -7,9 +7,10 @@
     flight.channels["north"]                       # (time, vehicle) array, m
 
 `load` takes a mission file, a path file or the name of a built-in mission, and raises `CardumeError`
-with what is wrong and what to do; `fly` gives a `Flight`, `compare` flies missions side by side and gives
-a `Comparison`; `study` flies one with values that are drawn or swept and gives an xarray data set,
-`open_study` one that was kept.  Each name is imported when it is used.
+with what is wrong and what to do; `fly` gives a `Flight`, of which `to_xarray` makes a data set;
+`compare` flies missions side by side and gives a `Comparison`; `study` flies one with values that are
+drawn or swept and gives an xarray data set, `open_study` one that was kept; `tune` looks for better
+values of its numbers.  Each name is imported when it is used.
 """
 
 import importlib
@@ -18,12 +19,14 @@ import typing
 if typing.TYPE_CHECKING:
     from cardume.errors import CardumeError
     from cardume.missions.flying import fly_mission as fly
+    from cardume.missions.log_dataset import to_xarray
     from cardume.missions.mission import Mission
     from cardume.missions.opening import open_mission as load
     from cardume.simulation.flight import Flight
     from cardume.studies.comparing import Comparison, compare
     from cardume.studies.store import open_study
     from cardume.studies.studying import study
+    from cardume.studies.tuning.tune import Tuning, tune
 
     __version__: str
 
@@ -32,12 +35,15 @@ __all__ = [
     "Comparison",
     "Flight",
     "Mission",
+    "Tuning",
     "__version__",
     "compare",
     "fly",
     "load",
     "open_study",
     "study",
+    "to_xarray",
+    "tune",
 ]
 
 _PLACES = {
@@ -45,11 +51,14 @@ _PLACES = {
     "Comparison": ("cardume.studies.comparing", "Comparison"),
     "Flight": ("cardume.simulation.flight", "Flight"),
     "Mission": ("cardume.missions.mission", "Mission"),
+    "Tuning": ("cardume.studies.tuning.tune", "Tuning"),
     "compare": ("cardume.studies.comparing", "compare"),
     "fly": ("cardume.missions.flying", "fly_mission"),
     "load": ("cardume.missions.opening", "open_mission"),
     "open_study": ("cardume.studies.store", "open_study"),
     "study": ("cardume.studies.studying", "study"),
+    "to_xarray": ("cardume.missions.log_dataset", "to_xarray"),
+    "tune": ("cardume.studies.tuning.tune", "tune"),
 }
 
 

@@ -21,6 +21,7 @@ CASES = {
         for fleet in ("figure-5", "figure-5, kinematic", "simplest laws")
         for threads in ("1 thread", "2 threads")
     ],
+    "many": ["preparing a mission", "10,000 missions of figure-5", "memory at most"],
     "reference": [
         "cardume, one mission alone",
         "cardume, scalar, 2 threads",

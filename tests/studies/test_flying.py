@@ -12,6 +12,7 @@ from cardume.missions.available import catalog
 from cardume.missions.drawing import draw
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
+from cardume.missions.summary import judge
 from cardume.studies.flying import RunTable, fly_seeds
 from studies.missions import NOISY
 
@@ -77,3 +78,41 @@ def test_nothing_is_required_and_nothing_flown() -> None:
     )
     assert 8 <= len(stopped) < 40
     assert math.isfinite(stopped.metrics["fleet_energy"][-1])
+
+
+EVERY_KIND = (
+    "guidance={choose: [{law: arcsine, gain: {uniform: [0.05 1/s, 0.2 1/s]}}, {law: line_of_sight, lookahead: 3 m}]}",
+    "path.length={uniform: [90 m, 110 m]}",
+    "path.start={course: {normal: [10 deg, 5 deg]}}",
+    "current={choose: [none, {type: uniform, speed: {uniform: [0 m/s, 0.2 m/s]}, towards: 40 deg}]}",
+    "vehicles.a.start.cross_track={normal: [3 m, 1 m]}",
+    "vehicles.a.sensors.gnss={sigma: {choose: [0 m, 0.2 m]}, period: {choose: [0.5 s, 1 s]}, latency: 0.2 s}",
+    "vehicles.b.depth={uniform: [2 m, 8 m]}",
+    "messaging.period={choose: [1 s, 2 s]}",
+    "acoustics={channel: bernoulli, loss: {uniform: [0, 0.9]}, delay: {uniform: [0.1 s, 0.6 s]}}",
+    "duration={choose: [15 s, 20 s, 25.5 s]}",
+    "transient.threshold={uniform: [1 m, 3 m]}",
+    "limits.depth={uniform: [3 m, 9 m]}",
+    "formation.speed={choose: [0.4 m/s, {profile: time, points: [[0 s, 0.3 m/s], [20 s, 0.5 m/s]]}]}",
+)
+TWO = DRAWN.replace("vehicles: [", "vehicles: [{name: b, model: kinematic, offset: {starboard: 3 m}}, ")
+
+
+@pytest.mark.parametrize("lanes", [False, True])
+def test_whatever_is_drawn_a_row_is_the_mission_flown_alone(lanes: bool) -> None:
+    mission = read(TWO, *EVERY_KIND)
+    table = fly_seeds(mission, range(24), lanes=lanes)
+    check_alone(mission, table)
+    assert set(table.drawn) >= {"guidance", "current", "path.length", "duration", "vehicles.a.sensors.gnss.sigma"}
+    assert len(set(table.drawn["duration"])) == 3
+    for k, seed in enumerate(table.seeds):
+        flight = cardume.fly(draw(mission, int(seed)))
+        told = {
+            f"{v.vehicle}: {v.metric}" if v.vehicle else v.metric: v
+            for v in judge(draw(mission, int(seed)).require, flight.metrics)
+        }
+        for j, name in enumerate(table.requirements):
+            verdict = told[name.partition(" <= ")[0]]
+            assert (table.got[k, j], table.met[k, j]) == (verdict.got, verdict.met)
+            when = np.nan if verdict.first_violated is None else verdict.first_violated
+            assert np.array_equal(table.violated_at[k, j], when, equal_nan=True)

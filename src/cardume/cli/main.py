@@ -28,6 +28,7 @@ from cardume.cli.report import report
 from cardume.cli.run import run
 from cardume.cli.stopping import Stopped
 from cardume.cli.study import study
+from cardume.cli.tune import tune
 from cardume.errors import CardumeError
 from cardume.units import printable
 
@@ -73,7 +74,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, compare, study, report, lab, calibrate, list_, new, convert):
+for _command in (run, check, compare, study, tune, report, lab, calibrate, list_, new, convert):
     cli.add_command(_command)
 
 

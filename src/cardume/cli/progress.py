@@ -15,8 +15,9 @@ WORDS = {
     "compare": "flying missions",
     "study": "flying missions",
     "verify": "checking what was flown",
+    "tune": "trying values",
 }
-PACED = ("compare", "study")  # stages whose pieces take equally long, so that their rate says when they end
+PACED = ("compare", "study", "tune")  # stages whose pieces take equally long, so that their rate says when they end
 
 
 class Progress:

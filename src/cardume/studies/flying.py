@@ -32,7 +32,7 @@ from cardume.simulation.tables import make_tables
 from cardume.simulation.warming import warm_up
 from cardume.studies.run_table import Run, RunTable, stack, tabulate
 
-__all__ = ["LANES_FROM", "Progress", "RunTable", "fly_all", "fly_seeds", "num_processors"]
+__all__ = ["LANES_FROM", "Progress", "RunTable", "fly_all", "fly_seeds", "num_processors", "prepare"]
 
 Progress = Callable[[str, int, int], None]
 Stop = Callable[[], bool]
@@ -149,6 +149,20 @@ def fly_all(
             progress("compare", done, total)
     tables = [stack(parts) if parts else tabulate(m, []) for m, parts in zip(missions, found, strict=True)]
     return [table.first(min(map(len, tables))) for table in tables]
+
+
+def prepare(mission: Mission, seeds: Sequence[int], known: Catalog, lanes: bool) -> None:
+    """Draw, plan and write the tables of missions, and fly none: for measuring what that costs.
+
+    Args:
+        mission: without sweeps.
+        seeds: one mission each.
+        known: where its laws are found.
+        lanes: whether for eight in a register.
+    """
+    maker = _Maker(mission, known)
+    for seed in seeds:
+        maker.make(seed, {}, lanes)
 
 
 def num_processors() -> int:

@@ -218,6 +218,9 @@ def _required(mission: Mission, measured: Measured, names: Sequence[str]) -> lis
     """What the mission requires, then the limits that vehicles have of their own; those that are drawn one by one."""
     fixed, drawn = [], []
     for metric, (limits, _) in measured.limits.items():
+        if (limits != limits[0]).any() and (limits == limits[:, :1]).all():  # one for all, drawn
+            drawn.append(_Wanted(f"{metric} {_sign(metric)} its limit", metric, None, limits[:, 0]))
+            continue
         for k, name in enumerate(names if limits.shape[1] == len(names) else [None]):
             if (limits[:, k] == limits[0, k]).all():
                 fixed += [Limit(metric, name, float(limits[0, k]))] if abs(limits[0, k]) < NEVER else []

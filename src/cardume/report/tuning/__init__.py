@@ -1,0 +1,1 @@
+"""A tuning as a table, sentences and a figure."""
