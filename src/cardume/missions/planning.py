@@ -257,7 +257,7 @@ def _vehicle(
         **memo.recall(
             "sensors",
             (vehicle.sensors, vehicle.model),
-            lambda: _sensors(vehicle, mission.tick, seabed is not None, catalog),
+            lambda: _sensors(vehicle, mission.tick, seabed is not None, catalog, memo),
             (mission.tick, seabed is not None),
         ),
     }
@@ -322,9 +322,13 @@ def _autopilot(vehicle: Vehicle, catalog: Catalog) -> Choice:
     return _choice(vehicle.autopilot, catalog)
 
 
-def _sensors(vehicle: Vehicle, tick: float, has_seabed: bool, catalog: Catalog) -> dict[str, Choice]:
+def _sensors(vehicle: Vehicle, tick: float, has_seabed: bool, catalog: Catalog, memo: Memo) -> dict[str, Choice]:
     """The sensors a vehicle carries, and the law by which it reads its shaft speed."""
     sensors = vehicle.sensors
+
+    def choice(chosen: LawChoice) -> Choice:
+        return memo.recall("law", (chosen,), lambda: _choice(chosen, catalog))
+
     laws: dict[str, Choice] = {}
     if sensors.ideal:
         kinds = (*IDEAL_SENSORS, *(("altimeter",) if has_seabed else ()))
@@ -332,10 +336,12 @@ def _sensors(vehicle: Vehicle, tick: float, has_seabed: bool, catalog: Catalog) 
     else:
         for kind in ("gnss", "ahrs", "depth", "usbl", "dvl", "altimeter"):
             if (chosen := getattr(sensors, kind)) is not None:
-                laws[kind] = _choice(chosen, catalog)
+                laws[kind] = choice(chosen)
         if sensors.thruster_speed is not None:
-            laws["thruster_speed"] = _choice(sensors.thruster_speed.law, catalog)
-    laws["speed"] = _reader(vehicle, sensors, catalog)
+            laws["thruster_speed"] = choice(sensors.thruster_speed.law)
+    laws["speed"] = memo.recall(
+        "reader", (vehicle.model, sensors.thruster_speed), lambda: _reader(vehicle, sensors, catalog)
+    )
     return laws
 
 

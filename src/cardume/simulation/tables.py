@@ -299,10 +299,12 @@ def _noise_pairs(choice: Choice, memo: Memo) -> int:
 
     Of a user's law it is never known that its noise is zero.
     """
-    sizes = [p.name for p in choice.law.parameters if any(part in p.name for part in CHANCES)]
-    if choice.law.is_builtin and sizes and not any(choice.value(name) for name in sizes):
-        return 0
     law = choice.law
+    sizes = memo.recall(
+        "chances", (law,), lambda: [p.name for p in law.parameters if any(c in p.name for c in CHANCES)]
+    )
+    if law.is_builtin and sizes and not any(choice.value(name) for name in sizes):
+        return 0
     read = memo.recall("noise read", (law,), lambda: fields_read(law.function, Noise))
     return 2 if read & {"c", "d"} else 1 if read else 0
 

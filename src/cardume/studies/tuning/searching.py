@@ -147,6 +147,9 @@ def search_several(attempt: Attempt, start: Shares, tries: int, goal: Goal, seed
         goal: what is better.
         seed: of the search.
 
+    Raises:
+        InputError: Optuna is not installed.
+
     Source: Deb, Pratap, Agarwal & Meyarivan (2002), as Optuna has it.
     """
     try:
