@@ -33,7 +33,7 @@ vehicles:
     depth: {depth!r} m
     offset: {{starboard: {aside!r} m, ahead: {ahead!r} m}}
     start: {{speed: 0.5}}
-    position: {{law: kalman_replay, initial_sigma: 1 m, current_sigma: 0.2 m/s, gate: 1e9}}
+    position: {{law: kalman_replay, initial_sigma: 1 m, current_sigma: 0.2 m/s, velocity_noise: 1e-3, gate: 1e9}}
     sensors:
       gnss: none
       ahrs: {{heading_sigma: 0, yaw_rate_sigma: 0, attitude_sigma: 0}}
@@ -106,7 +106,7 @@ def test_a_fix_says_how_it_errs(seed):
         draw = np.random.default_rng([33, seed])
         numbers |= {"course": draw.uniform(0, 6), "gnss": draw.uniform(0.1, 1), "heading": draw.uniform(0, 0.02)}
         numbers |= {"attitude": draw.uniform(0, 0.02), "range": draw.uniform(0.05, 0.3), "angle": draw.uniform(0, 0.02)}
-        numbers |= {"depth": draw.uniform(5, 40), "aside": draw.choice([-1, 1]) * draw.uniform(20, 50)}
+        numbers |= {"depth": draw.uniform(5, 40), "aside": float(draw.choice([-1, 1]) * draw.uniform(20, 50))}
     flown = fly_plan(MISSION.format(**numbers))
     fix = fix_of(flown)
     told = np.array([[fix.north_variance, fix.covariance], [fix.covariance, fix.east_variance]])
