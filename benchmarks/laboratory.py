@@ -15,11 +15,19 @@ from benchmarks.workloads import MISSION
 TARGET = 150.0  # [ms]
 MOVES, WARMING = 60, 10
 KEY = "vehicles.surface.acoustics.loss"
-MOVE = """
-    const row = [...document.querySelectorAll('.control')].find((one) => one.dataset.key === arguments[0]);
-    const slider = row.querySelector('.slider');
-    slider.value = arguments[1] * slider.max;
-    slider.dispatchEvent(new Event('input', { bubbles: true }));
+DRAG = """
+    const [key, count, done] = arguments;
+    const row = [...document.querySelectorAll('.control')].find((one) => one.dataset.key === key);
+    const slider = row.querySelector('.slider'), first = cardume.latencies.length;
+    const move = (number) => {
+        if (number === count) return done(cardume.latencies.slice(first));
+        slider.value = (0.1 + 0.4 * (number % 7) / 7) * slider.max;
+        slider.dispatchEvent(new Event('input', { bubbles: true }));
+        const isDrawn = () => cardume.latencies.length > first + number;
+        const look = () => isDrawn() ? setTimeout(() => move(number + 1), 50) : setTimeout(look, 5);
+        look();
+    };
+    move(0);
 """
 
 
@@ -45,12 +53,8 @@ def measure(effort: Effort, progress: Progress) -> Iterator[Row]:
             with browser() as page:
                 page.resize(1280, 800)
                 page.go(address)
-                for number in range(MOVES + WARMING):
-                    progress("move", number, MOVES + WARMING)
-                    before = page.run("return cardume.latencies.length")
-                    page.run(MOVE, KEY, 0.1 + 0.4 * (number % 7) / 7)
-                    page.wait(f"cardume.latencies.length > {before}")
-                taken = page.run("return cardume.latencies")[WARMING:]
+                progress("drag", 0, 0)
+                taken = page.driver.execute_async_script(DRAG, KEY, MOVES + WARMING)[WARMING:]
         finally:
             process.terminate()
             process.wait(60)

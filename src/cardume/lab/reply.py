@@ -14,7 +14,7 @@ from cardume.report.table import COLUMNS, NOTHING, cells_of, share_heard
 from cardume.report.words import meaning
 from cardume.simulation.flight import METRICS, Flight
 
-MOST_ROWS = 1500  # of one line; more cannot be seen at the page's size
+MOST_ROWS = 500  # of one line: two pixels each at the size of the page
 DRAWN = ("north", "east", "north_estimate", "east_estimate", "heading", "cross_track", "speed")
 
 
