@@ -296,8 +296,8 @@ def _result(future: Any) -> list[RunTable]:
         name, said = type(problem).__name__, printable(str(problem).splitlines()[0] if str(problem) else "")[:200]
         if name in ("KilledWorker", "CancelledError", "FutureCancelledError", "CommClosedError", "TimeoutError"):
             raise ClusterError(f"the cluster gave a portion up ({name}: {said}); {RESUME}") from None
-        if isinstance(problem, (ImportError, AttributeError, OSError)):
-            raise ClusterError(
-                f"a worker cannot fly ({name}: {said}); install the same cardume there; {RESUME}"
-            ) from None
+        is_other = isinstance(problem, RuntimeError) and "deserialization" in str(problem)  # by the scheduler
+        if is_other or isinstance(problem, (ImportError, AttributeError, OSError)):
+            what = f"the scheduler or a worker cannot fly ({name}: {said}); install the same cardume there"
+            raise ClusterError(f"{what}; {RESUME}") from None
         raise
