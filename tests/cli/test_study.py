@@ -50,7 +50,7 @@ def test_it_says_what_it_will_take_and_what_came_out(here: Path, cardume: Comman
     summary = json.loads((directory / "summary.json").read_text())
     assert summary["cases"][0]["flown"] == 12
     assert package.load(directory / "mission.yaml").to_yaml() == found.attrs["mission"]
-    assert found.attrs["command"].startswith("cardume ")
+    assert found.attrs["command"].startswith("cardume")
 
 
 def test_json_is_all_that_goes_to_stdout(here: Path, cardume: Command) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import shutil
 import sys
 from collections.abc import Iterator
@@ -128,10 +129,10 @@ def test_whatever_changes_the_result_changes_the_name(what: str) -> None:
 
 
 def test_what_does_not_matter_does_not() -> None:
-    """Another file, other lines, comments and a docstring compile nothing anew."""
+    """Other lines, comments and a docstring compile nothing anew."""
     law = LAW.format(body="helper(1.0)")
     one = law_in(HELPER.format(given="", body="x") + law)
-    other = law_in("# a comment\n\n" + HELPER.format(given="", body="x  # why") + "UNUSED = 3\n" + law, "elsewhere")
+    other = law_in("# a comment\n\n" + HELPER.format(given="", body="x  # why") + "UNUSED = 3\n" + law)
     assert name_in_the_cache(one) == name_in_the_cache(other)
 
 
@@ -180,3 +181,15 @@ def mine(error: PathError) -> float:
 def test_recursion_is_noticed(first: str, second: str, expected: bool) -> None:
     law = law_in(RECURSIVE.format(first=first, second=second))
     assert is_recursive(law.function) is expected
+
+
+def test_another_module_with_the_same_code_does_not_find_what_the_first_one_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("first_of_two", "second_of_two"):  # what is kept imports its module by name when it is read
+        (tmp_path / f"{name}.py").write_text(HEADER + LAW.format(body="0.125 * error.cross_track"))
+        law = importlib.import_module(name).mine
+        assert law.handle(lanes=False) > 0
+        (tmp_path / f"{name}.py").unlink()
+        del sys.modules[name]

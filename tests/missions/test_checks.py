@@ -188,7 +188,7 @@ CASES = [
     (LATE, ["tick=0.01 s"], "warning", "tick"),
     (TEAM, ["messaging.offset=0 s"], "warning", "messaging.offset"),
     (TEAM, ["messaging.period=0.5 s"], "warning", "messaging.period"),
-    (PAIR, ["messaging.period=0.1 s", *channel(delay="10 s")], "error", "messaging.period"),
+    (PAIR, ["messaging.period=0.1 s", *channel(delay="6.4 s")], "error", "messaging.period"),
     (ALONE, ["duration=60 s"], "warning", "duration"),
     (HULLED, ["tick=0.01 s", "plant_step=0.005 s"], "error", "plant_step"),
     (HULLED, ["autopilot.turn_bandwidth=45 1/s"], "error", "autopilot.turn_bandwidth"),
@@ -449,7 +449,7 @@ def test_fixes_too_late_or_held_too_long_make_it_weave(period: float, latency: f
         (["messaging=none"], False),
         (channel(loss="1"), False),
         (channel(max_range="6 m"), False),
-        (["messaging.period=0.1 s", *channel(delay="10 s")], False),
+        (["messaging.period=0.1 s", *channel(delay="6.4 s")], False),
     ],
 )
 def test_fleets_that_are_told_not_to_agree_do_not(overrides: list[str], agree: bool) -> None:

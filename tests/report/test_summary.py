@@ -138,6 +138,7 @@ north_estimate east_estimate current_north_estimate current_east_estimate
 cross_track_estimate coordination_state_estimate
 course_desired heading_desired speed_desired speed_correction thrust yaw_moment shaft_speed_rpm
 altitude depth_desired phase
+north_variance north_east_covariance east_variance
 """
 METRIC_NAMES = """
 cross_track_rms cross_track_p95 cross_track_max cross_track_iae cross_track_rms_lines cross_track_rms_arcs settling_time

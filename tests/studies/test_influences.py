@@ -18,20 +18,25 @@ def analyzed(x: np.ndarray, y: np.ndarray) -> dict[str, Influence]:
 
 
 def test_ishigami() -> None:
-    """sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1: V1 = (1 + b pi^4 / 5)^2 / 2, V2 = a^2 / 8, V13 = b^2 pi^8 8 / 225."""
+    """sin x1 + 7 sin^2 x2 + 0.1 x3^4 sin x1: V1 = (1 + b pi^4 / 5)^2 / 2, V2 = a^2 / 8, V13 = b^2 pi^8 8 / 225.
+
+    It is no polynomial, so a little of it is finer than what is fitted: told as unexplained, it belongs to somebody.
+    """
     a, b = 7.0, 0.1
     v1, v2, v13 = 0.5 * (1.0 + b * math.pi**4 / 5.0) ** 2, a * a / 8.0, b * b * math.pi**8 * (1.0 / 18.0 - 1.0 / 50.0)
     whole = v1 + v2 + v13
-    x = np.random.default_rng(1).uniform(-math.pi, math.pi, (1500, 3))
-    found = analyzed(x, np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0]))
+    x = np.random.default_rng(1).uniform(-math.pi, math.pi, (6000, 3))  # its variance is right to 2 %, of 1500 to 4
+    y = np.sin(x[:, 0]) + a * np.sin(x[:, 1]) ** 2 + b * x[:, 2] ** 4 * np.sin(x[:, 0])
+    result = analyze("y", [Input(f"x{k}", x[:, k], True) for k in range(3)], y, np.arange(6000) * 25 // 6000)
+    finer = 1.0 - result.explained.value
+    assert 0.0 < finer < 0.04
     first, total = (v1, v2, 0.0), (v1 + v13, v2, v13)
-    for k in range(3):
-        one = found[f"x{k}"]
+    for k, one in enumerate(result.inputs):
         assert one.first.value == pytest.approx(first[k] / whole, abs=0.02)
         assert one.total.value == pytest.approx(total[k] / whole, abs=0.02)
         assert one.is_clear  # x3 too, though it does nothing alone
-        assert one.total.low <= total[k] / whole <= one.total.high
-    assert found["x2"].rank.low < 0.0 < found["x2"].rank.high
+        assert one.total.low <= total[k] / whole <= one.total.high + finer
+    assert result.inputs[2].rank.low < 0.0 < result.inputs[2].rank.high
 
 
 COEFFICIENTS = np.array([1.0, 2.0, 0.5, 0.0])

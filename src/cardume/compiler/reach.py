@@ -55,8 +55,12 @@ def with_compiled_helpers(function: Any, done: dict[Any, Any] | None = None) -> 
 
 
 def fingerprint(function: Callable[..., Any], wrapper: str = "") -> str:
-    """Hash of the bytecode and constants of a function and of all it reaches by name, and of the code around it."""
-    digest = hashlib.blake2s(wrapper.encode(), digest_size=8)
+    """Hash of the bytecode and constants of a function and of all it reaches by name, and of the code around it.
+
+    Its module counts too: what is kept on disk imports it by name when it is read, so another module with the
+    same code must not find it.
+    """
+    digest = hashlib.blake2s(f"{function.__module__} {wrapper}".encode(), digest_size=8)
     seen: set[Any] = set()
 
     def add(value: Any, scope: dict[str, Any]) -> None:

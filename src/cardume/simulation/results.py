@@ -38,13 +38,18 @@ def metrics_of(flown: Flown) -> Metrics:
     found = measure([flown])
     vehicles = {
         vehicle.name: {
-            name: float(values[0, k]) for name, values in found.vehicles.items() if not found.is_absent(name)[0, k]
+            name: _number(values[0, k]) for name, values in found.vehicles.items() if not found.is_absent(name)[0, k]
         }
         for k, vehicle in enumerate(flown.plan.vehicles)
     }
-    fleet = {name: float(values[0]) for name, values in found.fleet.items()}
+    fleet = {name: _number(values[0]) for name, values in found.fleet.items()}
     limits = (*limits_of(flown), *separation_of(flown)) if flown.plan.is_watched else ()
     return Metrics(fleet=fleet, vehicles=vehicles, limits=limits)
+
+
+def _number(value: float) -> float:
+    """The number; of those that are none always the same one, so that equal metrics compare as equal."""
+    return float(value) if value == value else math.nan
 
 
 @dataclass(frozen=True)

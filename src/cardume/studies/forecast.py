@@ -19,6 +19,7 @@ from cardume.studies.run_table import RunTable
 
 GLIMPSE = 2.0  # [s] of a mission, in which every metric that it will have appears
 MOST_PROBED = 200  # options that are looked at
+MOST_COMPARED = 20  # options of which one must give other numbers with another seed
 MOST_TRIED = 100  # runs of which one must be such that its values fit one another
 SAMPLE = 32  # missions flown for their rate, where that takes less than
 SAMPLE_TIME = 1.0  # [s]
@@ -83,8 +84,13 @@ class Trial:
         return tuple(self._glimpse(self._cases.at(places[k])) for k in chosen)
 
     def is_random(self) -> bool:
-        """Whether the seed changes anything in the first case."""
-        table = self._fly(self._first, 2)
+        """Whether the seed changes anything, in any of a few cases that show the options of every sweep."""
+        places = self._cases.each_option_once()
+        chosen = np.unique(np.linspace(0, len(places) - 1, MOST_COMPARED).astype(int))
+        return any(self._differs(self._cases.at(places[k])) for k in chosen)
+
+    def _differs(self, mission: Mission) -> bool:
+        table = self._fly(mission, 2)
         columns = (*table.metrics.values(), table.failed_at)
         return not all(np.array_equal(values[:1], values[1:], equal_nan=True) for values in columns)
 
