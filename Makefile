@@ -120,7 +120,7 @@ $(VENV)/made-in: $(REMAKE)
 constraints:
 	@$(SAY) "resolving all versions on $(OLDEST)"
 	@rm -rf .cache/resolve && $(OLDEST) -m venv .cache/resolve
-	@PIP_CONSTRAINT= PIP_BUILD_CONSTRAINT= .cache/resolve/bin/python -m pip install --quiet '.[dev]' hatchling editables
+	@PIP_CONSTRAINT= PIP_BUILD_CONSTRAINT= .cache/resolve/bin/python -m pip install --quiet '.[dev,rerun]' hatchling editables
 	@{ echo "# Versions that are known to work together, resolved on $(OLDEST) by: make constraints"; \
 	   .cache/resolve/bin/python -m pip freeze --exclude cardume; } > constraints.txt
 	@rm -rf .cache/resolve

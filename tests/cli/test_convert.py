@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from cardume.missions.converting import VIEWERS
 from cardume.missions.formats import read_plan
 from cardume.missions.formats.content import FORMATS
 from cli.stand_ins import Result
@@ -224,7 +225,7 @@ def test_json_for_programs(desk: Path, cardume: Cardume) -> None:
 def test_formats_are_listed(cardume: Cardume) -> None:
     code, out, _ = cardume("list", "formats", "--json")
     assert code == 0
-    assert [entry["name"] for entry in json.loads(out)] == list(FORMATS)
+    assert [entry["name"] for entry in json.loads(out)] == [*FORMATS, *VIEWERS]
     assert ".geojson" in cardume("list", "formats").out
 
 

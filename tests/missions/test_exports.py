@@ -248,7 +248,10 @@ def test_one_vehicle_alone(converted: Callable[..., bytes]) -> None:
 @pytest.mark.parametrize(
     ("options", "complaint"),
     [
-        (["out.plan"], "there is no way from log to plan; from log there are csv, geojson, gpx, kml, mcap, parquet"),
+        (
+            ["out.plan"],
+            "no way from log to plan; from log there are csv, geojson, gpx, kml, mcap, parquet, rrd",
+        ),
         (["out.gpx", "--vehicle", "prot"], "--vehicle prot: no such vehicle"),
     ],
 )
@@ -280,7 +283,8 @@ def test_a_missing_library_is_named(monkeypatch: pytest.MonkeyPatch, run: Path) 
     from cardume.errors import InputError
     from cardume.missions.converting import Request
 
-    for kind, module, extra in (("parquet", "pyarrow", "parquet"), ("mcap", "mcap_ros2.writer", "ros")):
+    needed = {"parquet": ("pyarrow", "parquet"), "mcap": ("mcap_ros2.writer", "ros"), "rrd": ("rerun", "rerun")}
+    for kind, (module, extra) in needed.items():
         monkeypatch.setitem(sys.modules, module, None)
         with pytest.raises(InputError, match=rf"pip install 'cardume\[{extra}\]'"):
             convert_log(Request(source=str(run), target=Path(f"out.{kind}"), target_kind=kind))

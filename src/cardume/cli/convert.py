@@ -87,7 +87,8 @@ def convert(**given: Any) -> int:
     .yaml  mission              .plan       QGroundControl
     .gpx   route                .waypoints  ArduPilot, QGC WPL 110
     .geojson                    .medusa.txt MEDUSA / Farol
-    Of a run or its log.nc: tracks .gpx .geojson .kml, tables .csv .parquet, ROS 2 .mcap
+    Of a run or its log.nc: tracks .gpx .geojson .kml, tables .csv .parquet, ROS 2 .mcap,
+    Rerun .rrd
     Says what OUT cannot hold, and what of IN is not flown. cardume list formats says more.
     """
     from cardume.missions import converting

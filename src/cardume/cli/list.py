@@ -32,7 +32,7 @@ KEYS = {
 @json_option
 def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
     """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, the types of paths, or the
-    formats of path files.
+    formats of path files and of what is made of a run.
 
     A law of yours is shown by its name in a mission, as my_laws:my_law, its folder given by --allow-code.
     """
@@ -153,11 +153,15 @@ def _paths() -> list[dict[str, Any]]:
 
 
 def _formats() -> list[dict[str, Any]]:
+    from cardume.missions.converting import VIEWERS
     from cardume.missions.formats.content import FORMATS
 
-    return [
+    paths = [
         {"name": name, "summary": f"{known.title}: {known.keeps}", "suffixes": list(known.suffixes)}
         for name, known in FORMATS.items()
+    ]
+    return paths + [
+        {"name": name, "summary": made.holds, "suffixes": list(made.suffixes)} for name, made in VIEWERS.items()
     ]
 
 

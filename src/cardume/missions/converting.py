@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from cardume.errors import InputError
 from cardume.missions import library
@@ -25,12 +25,27 @@ if TYPE_CHECKING:
 
 MISSION = "mission"
 LOG = "log"
-VIEWERS = {"kml": (".kml",), "csv": (".csv",), "parquet": (".parquet",), "mcap": (".mcap",)}
+
+
+class Viewed(NamedTuple):
+    """A kind of file that is made of a log, for other people's programs."""
+
+    suffixes: tuple[str, ...]
+    holds: str
+
+
+VIEWERS = {
+    "kml": Viewed((".kml",), "of a run, for Google Earth: tracks with times"),
+    "csv": Viewed((".csv",), "of a run, for spreadsheets and pandas: all channels"),
+    "parquet": Viewed((".parquet",), "of a run, for pandas and R: all channels with units; cardume[parquet]"),
+    "mcap": Viewed((".mcap",), "of a run, for Foxglove, RViz and ros2 bag: ROS 2 messages; cardume[ros]"),
+    "rrd": Viewed((".rrd",), "of a run, for Rerun: tracks, paths, currents, channels, messages; cardume[rerun]"),
+}
 KINDS: dict[str, tuple[str, ...]] = {
     MISSION: (".yaml", ".yml"),
     LOG: (".nc",),
     **{name: f.suffixes for name, f in FORMATS.items()},
-    **VIEWERS,
+    **{name: v.suffixes for name, v in VIEWERS.items()},
 }
 """Kinds of file, by the endings of their names."""
 

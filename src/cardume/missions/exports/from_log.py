@@ -9,6 +9,7 @@ from cardume.missions.converting import Conversion, Request
 from cardume.missions.exports.geojson import geojson_of
 from cardume.missions.exports.gpx import gpx_of
 from cardume.missions.exports.kml import kml_of
+from cardume.missions.exports.rerun import rrd_of
 from cardume.missions.exports.ros import mcap_of
 from cardume.missions.exports.tables import csv_of, parquet_of
 from cardume.missions.exports.tracks import Track, tracks_of
@@ -55,6 +56,12 @@ def convert_log(request: Request) -> Conversion:
     elif kind in TABLES:
         content, holds = TABLES[kind](flight, origin), f"a table of all channels, SI; {records}"
         lost = ["messages, paths, and what vehicles predict of one another"]
+    elif kind == "rrd":
+        content, holds = (
+            rrd_of(flight),
+            f"Rerun: tracks, paths, currents, channels, messages; {records}",
+        )
+        lost = ["what vehicles predict of one another", "the last digits of places in its view: channels keep them"]
     else:
         content, holds = mcap_of(flight), f"ROS 2 poses, paths, transforms, markers, diagnostics; {records}"
         lost = ["what vehicles predict of one another"]
