@@ -13,11 +13,12 @@ import numpy as np
 import pytest
 
 from cardume.report import style
+from cardume.report.ellipse import LABEL
 from cardume.report.error_panels import draw_errors
 from cardume.report.figures import FIGURES, save_figures
 from cardume.report.plan import draw_plan
 from cardume.simulation.flight import Flight, Metrics
-from report.synthetic import make_flight
+from report.synthetic import make_flight, with_certainty
 
 
 @pytest.fixture(scope="module")
@@ -138,6 +139,26 @@ def test_nothing_is_drawn_outside_the_figure(flight: Flight) -> None:
 
 def test_instants_are_round_times(flight: Flight) -> None:
     assert {"150 s", "300 s", "450 s", "600 s", "700 s"} <= set(texts(draw_plan(flight)))
+
+
+def test_the_plan_shows_what_vehicles_expect_of_their_error(flight: Flight) -> None:
+    """About the believed positions at the instants 150, 300, 450, 600 and 700 s: n' P^-1 n = 5.991, all around."""
+    sure = with_certainty(flight)
+    figure, plain = draw_plan(sure), draw_plan(flight)
+    curves = [np.column_stack(line.get_data())[:, ::-1] for line in figure.axes[0].lines if line.get_lw() == 0.6]
+    wanted = [(k, t) for k, first in ((1, 150), (2, 300)) for t in (150, 300, 450, 600, 700) if t >= first]
+    assert len(curves) == len(wanted)
+    for (k, time), curve in zip(wanted, curves, strict=True):
+        now = {name: values[time // 2, k] for name, values in sure.channels.items()}
+        away = curve - [now["north_estimate"], now["east_estimate"]]
+        both = now["north_east_covariance"]
+        matrix = np.array([[now["north_variance"], both], [both, now["east_variance"]]])
+        np.testing.assert_allclose(np.einsum("pi,ij,pj->p", away, np.linalg.inv(matrix), away), 5.991, rtol=2e-4)
+        np.testing.assert_allclose(np.ptp(away, axis=0), 2 * np.sqrt(5.991 * np.diag(matrix)), rtol=3e-3)
+    assert LABEL in texts(figure)
+    assert LABEL not in texts(plain)
+    assert len(plain.axes[0].lines) == len(figure.axes[0].lines) - len(wanted)
+    draw_plan(sure, 3.5).canvas.draw()
 
 
 def test_the_current_is_shown_where_there_is_one(flight: Flight) -> None:

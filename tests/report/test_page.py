@@ -16,9 +16,9 @@ from cardume.report.page import page as pages
 from cardume.report.page.page import LibraryMissing, make_page, write_page
 from cardume.report.page.series import series_view
 from cardume.report.page.store import MOST_CELLS, Store, packed
-from cardume.simulation.flight import CHANNELS, MESSAGE_COLUMNS, Flight
+from cardume.simulation.flight import CERTAINTY, CHANNELS, MESSAGE_COLUMNS, Flight
 from report.runs import HOSTILE, hostile_run, make_run
-from report.synthetic import make_flight
+from report.synthetic import make_flight, with_certainty
 from report.test_figures import odd_flights
 
 LIMIT = 8_000_000  # [bytes] of a mail attachment
@@ -83,6 +83,24 @@ def test_the_page_carries_the_numbers_of_the_log(text: str) -> None:
             np.testing.assert_array_equal(column, flight.channels[name][:, k].astype("f4"), err_msg=name)
     assert np.array_equal(unpacked(carried["messages"]["lost"]), flight.messages["lost"])
     assert "one record of the log in" not in text
+
+
+def test_the_page_carries_covariances_only_of_vehicles_that_tell_them(text: str) -> None:
+    plain, flight = make_flight(), with_certainty(make_flight())
+    with_them = make_page(make_run(flight))
+    carried = numbers(with_them)
+    for name in CERTAINTY:
+        first, *rest = carried["store"]["columns"][name]
+        assert first is None
+        for k, column in enumerate(rest, 1):
+            np.testing.assert_array_equal(unpacked(column), flight.channels[name][:, k].astype("f4"))
+    assert len(with_them) - len(text) < 2 * 3 * 4 * len(flight.times) * 4 / 3 + 2000
+    assert "Thin ellipses" in with_them
+    old = replace(plain, channels={name: values for name, values in plain.channels.items() if name not in CERTAINTY})
+    unknown = replace(plain, channels=plain.channels | dict.fromkeys(CERTAINTY, plain.channels["north"] * np.nan))
+    for run in (make_run(old), make_run(unknown)):
+        assert numbers(make_page(run)) == numbers(text)
+        assert "Thin ellipses" not in make_page(run)
 
 
 def test_nothing_is_fetched_and_only_our_scripts_may_run(text: str) -> None:

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 from cardume.report.page.page import write_page
+from cardume.simulation.flight import Flight
 from report.browser import LACKING, Page, browser
 from report.runs import HOSTILE, hostile_run, make_run
-from report.synthetic import make_flight
+from report.synthetic import make_flight, with_certainty
 
 pytestmark = [
     pytest.mark.skipif(bool(LACKING), reason=LACKING),
@@ -23,6 +24,9 @@ FLIGHT = make_flight()
 NOW = (
     "return [...document.getElementById('now').tBodies[0].rows].map(r => [...r.cells].slice(1).map(c => c.textContent))"
 )
+
+LEGEND = "return [...document.querySelectorAll('#plan .legendtext')].map(t => t.textContent)"
+ELLIPSES = "document.getElementById('plan').data.filter(t => t.legendgroup === 'ellipses')"
 
 
 @pytest.fixture(scope="module")
@@ -89,6 +93,52 @@ def test_the_slider_moves_the_vehicles_to_where_the_log_has_them(page: Page, tim
     np.testing.assert_allclose(np.array(cells[0], float), wanted["north"], atol=0.0051)
     np.testing.assert_allclose(np.array(cells[2], float), wanted["depth"], atol=0.051)
     assert page.run("return document.getElementById('instant').textContent") == f"{time:.0f} s"
+
+
+@pytest.fixture
+def unsure(page: Page, tmp_path: Path) -> Iterator[Flight]:
+    """The page of a flight with error ellipses is open; then the other one again."""
+    flight, before = with_certainty(FLIGHT), page.run("return location.href")
+    write_page(tmp_path / "report.html", make_run(flight))
+    page.open(tmp_path / "report.html")
+    yield flight
+    page.go(before)
+
+
+@pytest.mark.parametrize("time", [150.0, 250.0, 420.5])
+def test_ellipses_are_those_of_the_covariance_in_the_log(page: Page, unsure: Flight, time: float) -> None:
+    """All points at n' P^-1 n = 5.991, around the whole, and as wide as the variances say; between records too."""
+    page.run("cardume.setTime(arguments[0])", time)
+    told = [1] if time < 200.0 else [1, 2]
+    now = {name: [np.interp(time, unsure.times, v[:, k]) for k in range(3)] for name, v in unsure.channels.items()}
+    settled(page, "plan", "vehicles", np.array(now["east"]))
+    for k in told:
+        east, north = drawn(page, "plan", f"ellipse_{k}")
+        away = np.column_stack([north - now["north_estimate"][k], east - now["east_estimate"][k]])
+        both = now["north_east_covariance"][k]
+        matrix = np.array([[now["north_variance"][k], both], [both, now["east_variance"][k]]])
+        distance = np.einsum("pi,ij,pj->p", away, np.linalg.inv(matrix), away)
+        np.testing.assert_allclose(distance, 5.991, rtol=2e-3)
+        # of 48 points evenly around, the outermost lies within 3.75 degrees of the very end
+        reach = np.sqrt(5.9915 * np.diag(matrix))
+        for ends in (away.max(axis=0), -away.min(axis=0)):
+            assert np.all((ends <= reach * 1.001) & (ends >= reach * np.cos(np.radians(3.75)) * 0.999))
+        np.testing.assert_array_equal(away[0], away[-1])
+    if 2 not in told:
+        assert drawn(page, "plan", "ellipse_2")[0].size == 0
+    assert [text for text in page.complaints() if "willReadFrequently" not in text] == []
+
+
+def test_ellipses_have_a_word_and_the_colors_of_their_vehicles(page: Page, unsure: Flight) -> None:
+    assert page.run(LEGEND).count("95 % of its own error") == 1
+    _, *colors = page.run(f"return {ELLIPSES}.map(t => t.line.color)")  # the first is the legend's
+    assert colors == page.run("return document.getElementById('plan').data.at(-1).marker.color")[1:]
+    assert len(colors) == len(unsure.vehicle_names) - 1
+
+
+def test_without_a_law_that_tells_it_there_is_no_ellipse(page: Page) -> None:
+    assert not any("95 %" in word for word in page.run(LEGEND))
+    assert page.run(f"return {ELLIPSES}.length") == 0
 
 
 def test_vehicles_point_where_they_head(page: Page) -> None:

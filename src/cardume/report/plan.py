@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from cardume.report import style
+from cardume.report.ellipse import LABEL, certainty, ellipse, vehicles_with_certainty
 from cardume.report.logs import as_flight
 from cardume.simulation.flight import Flight
 
@@ -31,7 +32,7 @@ def draw_plan(log: Any, width: float = style.WIDTH) -> Any:
     with style.styled():
         inner = width - LEFT - RIGHT
         low, high = _limits(flight, inner)
-        legends = [style.vehicle_handles(flight.vehicle_names), _meanings()]
+        legends = [style.vehicle_handles(flight.vehicle_names), _meanings(flight)]
         columns = [style.columns(handles, width - LEFT - COMPASS + 0.1) for handles in legends]
         rows = [math.ceil(len(handles) / count) for handles, count in zip(legends, columns, strict=True)]
         top = max(0.6, style.ROW * sum(rows) + 0.25)
@@ -43,6 +44,7 @@ def draw_plan(log: Any, width: float = style.WIDTH) -> Any:
         _prepare(axes, low, high)
         _draw_paths(axes, flight)
         _draw_tracks(axes, flight)
+        _draw_ellipses(axes, flight)
         _draw_instants(axes, flight, size=HULL * (high[1] - low[1]) / inner)
         for handles, count, above in zip(legends, columns, (0, rows[0]), strict=True):
             place = (LEFT / width, 1 - (0.08 + style.ROW * above) / height)
@@ -98,6 +100,17 @@ def _draw_tracks(axes: Any, flight: Flight) -> None:
         axes.plot(east, north, color=style.color(k), lw=1.3)
         if len(rows):
             axes.plot(east[0], north[0], "o", ms=5, mfc="white", mec=style.color(k), mew=1.2, zorder=5)
+
+
+def _draw_ellipses(axes: Any, flight: Flight) -> None:
+    """What the vehicles expect of their own error, at the same instants, about where they believe to be."""
+    covariance = certainty(flight)
+    for k in vehicles_with_certainty(flight):
+        for row in _instants(flight.times):
+            if np.isfinite(covariance[:, row, k]).all():
+                curve = ellipse(covariance[:, row, k])
+                north, east = (flight.channels[f"{axis}_estimate"][row, k] for axis in ("north", "east"))
+                axes.plot(east + curve[:, 1], north + curve[:, 0], color=style.color(k), lw=0.6, zorder=6)
 
 
 def _draw_instants(axes: Any, flight: Flight, size: float) -> None:
@@ -156,14 +169,17 @@ def _hull(north: float, east: float, heading: float, size: float) -> np.ndarray:
     return corners
 
 
-def _meanings() -> list[Any]:
+def _meanings(flight: Flight) -> list[Any]:
     from matplotlib.lines import Line2D
 
+    told = bool(vehicles_with_certainty(flight))
+    own_error = [Line2D([], [], color=style.FAINT, lw=0.6, label=LABEL)] if told else []
     return [
         Line2D([], [], color=style.FAINT, lw=4.0, alpha=0.35, label="path"),
         Line2D([], [], color=style.FAINT, lw=1.3, label="true"),
         Line2D([], [], color=style.FAINT, lw=0.8, dashes=(2, 1.5), label="believed"),
         Line2D([], [], color="none", marker="o", ms=5, mfc="white", mec=style.FAINT, mew=1.2, label="start"),
+        *own_error,
     ]
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from cardume.errors import InputError
 from cardume.missions.atomic import write_file
 from cardume.missions.runs import Run
+from cardume.report.ellipse import BOUND, vehicles_with_certainty
 from cardume.report.limits import limits_of
 from cardume.report.page.plan_view import arrow_scale, plan_view
 from cardume.report.page.series import series_view
@@ -24,7 +25,7 @@ from cardume.report.page.store import Store, color, pack_messages, shown_message
 from cardume.report.page.tables import badge, now_table, numbers_table, requirements_table
 from cardume.report.table import number
 from cardume.report.words import meaning
-from cardume.simulation.flight import Flight
+from cardume.simulation.flight import CERTAINTY, Flight
 
 FILE_NAME = "report.html"
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
@@ -130,6 +131,10 @@ def _data(store: Store, figures: Mapping[str, Any]) -> str:
     flight = store.flight
     for name in MOVED:
         store.keep(name)
+    told = vehicles_with_certainty(flight)
+    for name in CERTAINTY if told else ():
+        for vehicle in told:
+            store.column(name, vehicle)
     delays = np.asarray(flight.messages["time_received"], float) - np.asarray(flight.messages["time_sent"], float)
     known = delays[np.isfinite(delays)]
     contents = {
@@ -138,6 +143,7 @@ def _data(store: Store, figures: Mapping[str, Any]) -> str:
         "figures": figures,
         "moved": MOVED,
         "arrow": arrow_scale(store),
+        "ellipses": {"vehicles": told, "covariance": CERTAINTY, "bound": BOUND},
         "messages": pack_messages(flight),
         "slowest": float(known.max()) if known.size else 0.0,  # [s] on the way
         "start": float(store.times[len(store.times) // 3]) if len(store.times) else 0.0,
@@ -162,6 +168,8 @@ def _plan_note(store: Store) -> str:
     parts = [
         "Tips of arrowheads: vehicles; circles: where they believe to be; wide lines: paths; dotted: believed tracks."
     ]
+    if vehicles_with_certainty(flight):
+        parts.append("Thin ellipses: 95 % of the error that a vehicle expects of its belief.")
     if scale:
         strongest = np.nanmax(np.hypot(store.values("current_north"), store.values("current_east")))
         parts.append(f"Blue arrows: current, the longest {number(float(strongest))} m/s.")

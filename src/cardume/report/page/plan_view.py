@@ -1,9 +1,11 @@
 """The plan view of the page: paths, tracks, and what moves when the slider does."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from cardume.report.ellipse import LABEL, vehicles_with_certainty
 from cardume.report.page.layout import base_layout
 from cardume.report.page.store import GRAY, Store, color, packed, plotly_text
 
@@ -37,9 +39,10 @@ def plan_view(store: Store) -> dict[str, Any]:
 
     Returns:
         `data` and `layout` as Plotly takes them, with references in place of columns; `moving` says which trace
-        is which of MOVING.
+        is which of MOVING, and `ellipse_K` of the vehicles K that tell their error.
     """
-    fixed = [_reference(store), *_paths(store), *_tracks(store)]
+    ellipses = _ellipses(vehicles_with_certainty(store.flight))
+    fixed = [_reference(store), *_paths(store), *_tracks(store), *_ellipse_legend(ellipses)]
     layout = base_layout() | {
         "xaxis": {"title": {"text": "east [m]"}, "constrain": "domain"},
         "yaxis": {"title": {"text": "north [m]"}, "scaleanchor": "x", "scaleratio": 1, "constrain": "domain"},
@@ -48,8 +51,8 @@ def plan_view(store: Store) -> dict[str, Any]:
         "margin": {"l": 55, "r": 10, "t": 10, "b": 45},
         "legend": {"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0},
     }
-    moving = {name: len(fixed) + place for place, name in enumerate(MOVING)}
-    return {"data": [*fixed, *_moving(store)], "layout": layout, "moving": moving}
+    moving = {name: len(fixed) + place for place, name in enumerate([*ellipses, *MOVING])}
+    return {"data": [*fixed, *ellipses.values(), *_moving(store)], "layout": layout, "moving": moving}
 
 
 def _reference(store: Store) -> dict[str, Any]:
@@ -102,6 +105,20 @@ def _tracks(store: Store) -> list[dict[str, Any]]:
         }
         traces += [shared | believed, shared | true]
     return traces
+
+
+def _ellipses(vehicles: list[int]) -> dict[str, dict[str, Any]]:
+    """A trace for each of these vehicles, which the page fills in."""
+    shared: dict[str, Any] = {"type": "scatter", "mode": "lines", "x": [], "y": [], "legendgroup": "ellipses"}
+    quiet: dict[str, Any] = {"hoverinfo": "skip", "showlegend": False}
+    return {f"ellipse_{k}": shared | quiet | {"line": {"color": color(k), "width": 1}} for k in vehicles}
+
+
+def _ellipse_legend(ellipses: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """A word in the legend for all ellipses, which hides them too; nothing where there are none."""
+    shared: dict[str, Any] = {"type": "scatter", "mode": "lines", "x": [None], "y": [None], "hoverinfo": "skip"}
+    look: dict[str, Any] = {"name": LABEL, "legendgroup": "ellipses", "line": {"color": GRAY, "width": 1}}
+    return [shared | look] if ellipses else []
 
 
 def _moving(store: Store) -> list[dict[str, Any]]:

@@ -87,6 +87,20 @@
   };
   const points = (list) => ({ x: list.map((p) => p.x), y: list.map((p) => p.y), z: list.map((p) => p.z) });
 
+  // The curve n' P^-1 n = bound about where a vehicle believes to be: half axes along the eigenvectors of P.
+  const ellipse = (vehicle, time, { x, y }) => {
+    const where = place(time);
+    const [north, both, east] = report.ellipses.covariance.map((name) => at(name, vehicle, where));
+    const [mean, root] = [(north + east) / 2, Math.hypot((north - east) / 2, both)];
+    if (!(mean > 0)) return points([]); // it does not say
+    const [long, short] = [mean + root, Math.max(0, mean - root)].map((value) => Math.sqrt(report.ellipses.bound * value));
+    const turn = Math.atan2(2 * both, north - east) / 2; // of the long axis, from north
+    return points(Array.from({ length: 49 }, (_, k) => {
+      const [along, across] = [long * Math.cos((k * Math.PI) / 24), short * Math.sin((k * Math.PI) / 24)];
+      return { x: x + along * Math.sin(turn) + across * Math.cos(turn), y: y + along * Math.cos(turn) - across * Math.sin(turn) };
+    }));
+  };
+
   const moved = (time) => {
     const now = state(time);
     const true_ = report.vehicles.map((_, k) => ({ x: now.east[k], y: now.north[k], z: now.depth[k] }));
@@ -103,6 +117,7 @@
     return {
       now,
       traces: {
+        ...Object.fromEntries(report.ellipses.vehicles.map((k) => [`ellipse_${k}`, ellipse(k, time, believed[k])])),
         vehicles: points(true_),
         believed: points(believed),
         doubts: joined(true_.map((p, k) => [p, believed[k]])),
