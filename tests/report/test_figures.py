@@ -142,11 +142,11 @@ def test_instants_are_round_times(flight: Flight) -> None:
 
 
 def test_the_plan_shows_what_vehicles_expect_of_their_error(flight: Flight) -> None:
-    """About the believed positions at the instants 150, 300, 450, 600 and 700 s: n' P^-1 n = 5.991, all around."""
+    """About the believed positions midway between 0, 150, 300, 450, 600 and 700 s: n' P^-1 n = 5.991, all around."""
     sure = with_certainty(flight)
     figure, plain = draw_plan(sure), draw_plan(flight)
     curves = [np.column_stack(line.get_data())[:, ::-1] for line in figure.axes[0].lines if line.get_lw() == 0.6]
-    wanted = [(k, t) for k, first in ((1, 150), (2, 300)) for t in (150, 300, 450, 600, 700) if t >= first]
+    wanted = [(k, t) for k, first in ((1, 0), (2, 200)) for t in (74, 224, 374, 524, 650) if t >= first]
     assert len(curves) == len(wanted)
     for (k, time), curve in zip(wanted, curves, strict=True):
         now = {name: values[time // 2, k] for name, values in sure.channels.items()}

@@ -1,5 +1,6 @@
 """The plan view: where the vehicles were to go, where they went, where they believed they were."""
 
+import itertools
 import math
 from typing import Any
 
@@ -103,10 +104,10 @@ def _draw_tracks(axes: Any, flight: Flight) -> None:
 
 
 def _draw_ellipses(axes: Any, flight: Flight) -> None:
-    """What the vehicles expect of their own error, at the same instants, about where they believe to be."""
-    covariance = certainty(flight)
+    """What vehicles expect of their own error, about where they believed to be: midway, where no hull hides it."""
+    covariance, rows = certainty(flight), [0, *_instants(flight.times)]
     for k in vehicles_with_certainty(flight):
-        for row in _instants(flight.times):
+        for row in [(before + after) // 2 for before, after in itertools.pairwise(rows)]:
             if np.isfinite(covariance[:, row, k]).all():
                 curve = ellipse(covariance[:, row, k])
                 north, east = (flight.channels[f"{axis}_estimate"][row, k] for axis in ("north", "east"))

@@ -169,7 +169,7 @@ def _plan_note(store: Store) -> str:
         "Tips of arrowheads: vehicles; circles: where they believe to be; wide lines: paths; dotted: believed tracks."
     ]
     if vehicles_with_certainty(flight):
-        parts.append("Thin ellipses: 95 % of the error that a vehicle expects of its belief.")
+        parts.append("Thin ellipses: 95 % of the error that a vehicle expects; zoom in where the circle hides one.")
     if scale:
         strongest = np.nanmax(np.hypot(store.values("current_north"), store.values("current_east")))
         parts.append(f"Blue arrows: current, the longest {number(float(strongest))} m/s.")
