@@ -6,8 +6,10 @@ folders that the user allowed, and only from those.
 """
 
 import hashlib
+import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cache, lru_cache
 from pathlib import Path
@@ -129,7 +131,8 @@ class Cluster:
         needed("dask", "dask and distributed")
         try:
             if self._address is None:
-                self._client = self._stack.enter_context(distributed.Client(self._local(distributed)))
+                with _ignoring_interrupts():  # the workers inherit it
+                    self._client = self._stack.enter_context(distributed.Client(self._local(distributed)))
             else:
                 self._client = self._stack.enter_context(_connected(distributed, self._address))
         except BaseException:
@@ -178,10 +181,23 @@ class Cluster:
                 n_workers=self._workers,
                 threads_per_worker=1,
                 processes=True,
-                dashboard_address=None,
+                dashboard_address="127.0.0.1:0",  # a free port
                 silence_logs="CRITICAL",
             )
         )
+
+
+@contextmanager
+def _ignoring_interrupts() -> Iterator[None]:
+    """Let processes that begin meanwhile ignore Ctrl-C, which a terminal sends to all: the study ends them itself."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may say so
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def fly_task(
