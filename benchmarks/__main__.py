@@ -19,8 +19,7 @@ from benchmarks import (
 )
 from benchmarks.calibration import Calibration
 from benchmarks.display import Display
-from benchmarks.reference import measure as reference
-from benchmarks.reference import sizes
+from benchmarks.reference import measure as reference, sizes
 from benchmarks.row import Row, load, run_record, save
 from benchmarks.table import compare, show
 from benchmarks.timing import Effort

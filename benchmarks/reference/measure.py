@@ -8,8 +8,7 @@ from functools import partial
 from benchmarks.calibration import VEHICLE_STEPS
 from benchmarks.reference import native
 from benchmarks.reference.numpy_across import Missions
-from benchmarks.reference.pvs import CASE as PVS
-from benchmarks.reference.pvs import pvs_work, why_no_pvs
+from benchmarks.reference.pvs import CASE as PVS, pvs_work, why_no_pvs
 from benchmarks.reference.workload import kernel_work, reference_plans
 from benchmarks.row import RATE, TIMES, Row
 from benchmarks.timing import Effort, Progress, Sample, Work, take_turns

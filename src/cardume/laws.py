@@ -34,62 +34,24 @@ from cardume.compiler.records import flattened, read_record, size_of
 from cardume.errors import LawError
 from cardume.parameters import (
     Bounds as Bounds,
-)
-from cardume.parameters import (
     Kilograms as Kilograms,
-)
-from cardume.parameters import (
     Length as Length,
-)
-from cardume.parameters import (
     Meters as Meters,
-)
-from cardume.parameters import (
     MetersPerSecond as MetersPerSecond,
-)
-from cardume.parameters import (
     NewtonMeters as NewtonMeters,
-)
-from cardume.parameters import (
     Newtons as Newtons,
-)
-from cardume.parameters import (
     NotNegative as NotNegative,
-)
-from cardume.parameters import (
     Number as Number,
-)
-from cardume.parameters import (
     Once as Once,
-)
-from cardume.parameters import (
     Parameter as Parameter,
-)
-from cardume.parameters import (
     PerSecond as PerSecond,
-)
-from cardume.parameters import (
     PerSecondSquared as PerSecondSquared,
-)
-from cardume.parameters import (
     Positive as Positive,
-)
-from cardume.parameters import (
     Probability as Probability,
-)
-from cardume.parameters import (
     Radians as Radians,
-)
-from cardume.parameters import (
     RadiansPerSecond as RadiansPerSecond,
-)
-from cardume.parameters import (
     Seconds as Seconds,
-)
-from cardume.parameters import (
     Unit as Unit,
-)
-from cardume.parameters import (
     note_in,
     parameter_of,
     parameters_of,

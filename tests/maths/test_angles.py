@@ -7,8 +7,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cardume.maths import ANGLE_LIMIT, PI, TWO_PI, angle_difference, sincos, unwrap_near, wrap_angle
 from maths.evaluate import IN_PYTHON, lanes, plain, same_bits, scalar

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cardume import maths
 from maths.evaluate import IN_PYTHON, lanes, plain, same_bits, scalar

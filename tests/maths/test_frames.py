@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cardume.maths import HALF_PI, PI, to_body, to_body_3d, to_cartesian, to_ned, to_ned_3d, to_path, to_spherical
 from maths.evaluate import IN_PYTHON, lanes, plain, same_bits, scalar

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from scipy.stats import binom
-from scipy.stats import t as students_t
+from scipy.stats import binom, t as students_t
 
 from cardume.cli.main import cli
 from cardume.errors import DataError

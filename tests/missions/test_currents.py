@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from netCDF4 import Dataset
 from pyproj import Geod
 from scipy.interpolate import RegularGridInterpolator

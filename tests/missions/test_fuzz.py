@@ -4,8 +4,7 @@ import json
 from contextlib import suppress
 from typing import Any
 
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 
 from cardume.errors import MissionError
 from cardume.missions import Mission, draw, load_mission, parse_mission

@@ -1,8 +1,7 @@
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cardume.errors import UnitError
 from cardume.units import UNITS, format_quantity, nearest, parse_quantity, show_quantity, show_text

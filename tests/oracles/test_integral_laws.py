@@ -8,8 +8,7 @@ import pytest
 from flying import series, value_at
 from oracles.aboard import fly_plan, memory_of
 from oracles.closed_forms import integrate
-from oracles.kinematic import Scene, assert_converges, at, flown, water
-from oracles.kinematic import curve as curved
+from oracles.kinematic import Scene, assert_converges, at, curve as curved, flown, water
 
 COURSE = 0.5
 LINE = f"type: line, start: {{north: 3, east: -2, course: {COURSE!r}}}, length: 3000"

@@ -5,8 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 
 from cardume.paths.along import arc_length_at, path_parameter_at
 from cardume.paths.arc import arc

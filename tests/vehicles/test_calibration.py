@@ -3,8 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from cardume.onboard.estimation.speed import proportional, thruster_calibration
 from cardume.signals import ShaftReading

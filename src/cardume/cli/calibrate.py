@@ -41,8 +41,7 @@ def calibrate(
     and back, at two speeds or more. Exit code 1: the data cannot tell the scale.
     """
     del allow_code
-    from cardume.missions.calibration import calibrate as fit
-    from cardume.missions.calibration import read_tracks
+    from cardume.missions.calibration import calibrate as fit, read_tracks
 
     tracks = read_tracks(log, model)
     names = [track.name for track in tracks]

@@ -73,18 +73,14 @@ def passing(record: Any) -> Any:
     return record
 
 
-def _reference(is_fixed: bool) -> Any:
-    def typed(record: Any) -> Any:
-        return ReferenceType(record, is_fixed)(record) if isinstance(record, types.BaseNamedTuple) else None
-
-    return typed
-
-
-@primitive(fixed, _reference(True))
-def _fixed(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-    return cgutils.alloca_once_value(b, arguments[0])
+def _take_the_address(function: Any, is_fixed: bool) -> None:
+    @primitive(
+        function,
+        lambda record: ReferenceType(record, is_fixed)(record) if isinstance(record, types.BaseNamedTuple) else None,
+    )
+    def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+        return cgutils.alloca_once_value(b, arguments[0])
 
 
-@primitive(passing, _reference(False))
-def _passing(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-    return cgutils.alloca_once_value(b, arguments[0])
+_take_the_address(fixed, is_fixed=True)
+_take_the_address(passing, is_fixed=False)

@@ -98,12 +98,7 @@ def times_transposed(a: Block, b: Block) -> Block:
         a: [any]
         b: [any]
     """
-    return Block(
-        a.nn * b.nn + a.ne * b.ne,
-        a.nn * b.en + a.ne * b.ee,
-        a.en * b.nn + a.ee * b.ne,
-        a.en * b.en + a.ee * b.ee,
-    )
+    return times(a, transposed(b))
 
 
 @compiled
@@ -114,9 +109,4 @@ def transposed_times(a: Block, b: Block) -> Block:
         a: [any]
         b: [any]
     """
-    return Block(
-        a.nn * b.nn + a.en * b.en,
-        a.nn * b.ne + a.en * b.ee,
-        a.ne * b.nn + a.ee * b.en,
-        a.ne * b.ne + a.ee * b.ee,
-    )
+    return times(transposed(a), b)

@@ -20,9 +20,11 @@ from cardume.onboard.navigation import (
     observe_current,
     speed_through_water,
 )
-from cardume.onboard.neighborhood import Said, look_around, predict_neighbors, report
+from cardume.onboard.neighborhood import predict_neighbors
 from cardume.onboard.pace import keep_pace
 from cardume.onboard.phases import HOLD_GAIN, HOLD_RADIUS, change_phase, wait_or_go
+from cardume.onboard.sightings import look_around
+from cardume.onboard.telling import Said, report
 from cardume.paths.projection import point_at
 from cardume.paths.table import LENGTH_OWN
 from cardume.signals import (

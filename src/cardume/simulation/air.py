@@ -20,7 +20,7 @@ from cardume.onboard.mind import (
     put_head,
     put_seen,
 )
-from cardume.onboard.neighborhood import Said, rounded_sighting
+from cardume.onboard.telling import Said, rounded_sighting
 from cardume.signals import NOTHING, Link, Sighting
 from cardume.simulation.contention import contend
 from cardume.simulation.fleet import NEVER, Fleet, book_of, features_of, get_medium, get_vessel, sources_of

@@ -4,7 +4,7 @@ from cardume.compiler import at, compiled, floor, load, some, store, where
 from cardume.maths import to_body
 from cardume.maths.random import Key, normals
 from cardume.onboard.mind import get_setup, head_of, is_fresh
-from cardume.onboard.neighborhood import USBL_WIDTH
+from cardume.onboard.sightings import USBL_WIDTH
 from cardume.signals import (
     NOTHING,
     Baseline,

@@ -1,0 +1,146 @@
+"""What a vehicle with a USBL head sees of the others: where they are, how sure that is, and how far on their paths."""
+
+from cardume.compiler import at, compiled, load, negate, some, where
+from cardume.maths import to_cartesian, to_ned_3d
+from cardume.maths.blocks import Spread
+from cardume.onboard.mind import (
+    LastSeen,
+    Mind,
+    News,
+    get_datasheet,
+    get_last_seen,
+    get_news,
+    get_seen_place,
+    get_setup,
+    path_of,
+    put_last_seen,
+    put_seen_place,
+)
+from cardume.onboard.neighborhood import forget_news, learn
+from cardume.paths.projection import project
+from cardume.signals import NOTHING, Measured, Motion, NavigationEstimate, PathError, Place
+
+USBL_WIDTH = 4  # range, azimuth, elevation, age
+
+
+@compiled
+def look_around(
+    mind: Mind, measured: Measured, position: NavigationEstimate, motion: Motion, error: PathError, time: float
+) -> None:
+    """Begin the tick without news of the others; with a USBL head, turn each new reading into news.
+
+    p_j = p_1 - V_1 age + R_1 r, R_1 the measured attitude, turned back by the yaw rate times the age;
+    gamma_j is the projection of p_j on j's own path.
+    """
+    forget_news(mind)
+    shares = some(get_setup(mind.own, 0).shares_sightings > 0.5)
+    for vehicle in range(mind.size if shares else 0):
+        reading = at(measured.usbl, vehicle * USBL_WIDTH)
+        age = load(reading, 3)
+        is_new = age == age
+        if some(is_new):
+            ahead, starboard, down = to_cartesian(load(reading, 0), load(reading, 1), load(reading, 2))
+            north, east, down = to_ned_3d(
+                measured.roll, measured.pitch, measured.heading - measured.yaw_rate * age, ahead, starboard, down
+            )
+            spread = spread_of_sighting(mind, position, north, east, down)
+            north = north + position.north - age * (motion.north + motion.current_north)
+            east = east + position.east - age * (motion.east + motion.current_east)
+            nothing = NOTHING * age
+            seen = LastSeen(north, east, time - age, spread.nn, spread.ne, spread.ee, nothing, nothing)
+            has_bearing = is_new & (load(reading, 1) == load(reading, 1))
+            sight(mind, vehicle, has_bearing, seen, error)
+            is_range = is_new & negate(has_bearing)
+            if some(is_range):
+                ranged = range_from(mind, measured, position, motion, load(reading, 0), age, time)
+                put_last_seen(mind.others, vehicle, where(is_range, ranged, get_last_seen(mind.others, vehicle)))
+
+
+@compiled
+def range_from(
+    mind: Mind,
+    measured: Measured,
+    position: NavigationEstimate,
+    motion: Motion,
+    distance: float,
+    age: float,
+    time: float,
+) -> LastSeen:
+    """What is left of a reading without a bearing: from where how far away a vehicle was.
+
+    Its variances are those of the own position and of the range together.
+
+    Args:
+        mind: of the one who measured.
+        measured: its depth.
+        position: its own.
+        motion: its own.
+        distance: [m] slant range.
+        age: [s] of the reading.
+        time: [s]
+    """
+    told = get_datasheet(mind.own, 0)
+    own, known = told.gnss * told.gnss, position.north_variance == position.north_variance
+    more = told.range * told.range
+    return LastSeen(
+        position.north - age * (motion.north + motion.current_north),
+        position.east - age * (motion.east + motion.current_east),
+        time - age,
+        where(known, position.north_variance, own) + more,
+        where(known, position.covariance, 0.0),
+        where(known, position.east_variance, own) + more,
+        distance,
+        measured.depth,
+    )
+
+
+@compiled
+def spread_of_sighting(mind: Mind, position: NavigationEstimate, north: float, east: float, down: float) -> Spread:
+    """Covariance of where a vehicle is seen: long across the line of sight, where angles and heading go wrong.
+
+    R = P_1 + a l l^T + b (1 - l l^T),   l = (north, east) / h,   h = hypot(north, east),   r = hypot(h, down)
+    a = (sigma_r h / r)^2 + (sigma_a down)^2 + t,   b = (sigma_a h)^2 + (sigma_psi h)^2 + t,   t = (sigma_t down)^2
+
+    P_1 is the covariance of the own position, of a vehicle that does not know it that of its GNSS; sigma_r and sigma_a
+    are those of the USBL, sigma_psi and sigma_t those of heading and of roll and pitch.
+
+    Args:
+        mind: of the one who sees.
+        position: its own.
+        north: [m] of the target from the head, by measured attitude.
+        east: [m]
+        down: [m]
+    """
+    told = get_datasheet(mind.own, 0)
+    level, below = north * north + east * east, down * down
+    angle, tilt = told.angle * told.angle, below * told.attitude * told.attitude
+    slant = where(level + below > 0.0, level + below, 1.0)
+    along = told.range * told.range * level / slant + angle * below + tilt
+    across = level * (angle + told.heading * told.heading) + tilt
+    more = (along - across) / where(level > 0.0, level, 1.0)
+    own, known = told.gnss * told.gnss, position.north_variance == position.north_variance
+    return Spread(
+        where(known, position.north_variance, own) + across + more * north * north,
+        where(known, position.covariance, 0.0) + more * north * east,
+        where(known, position.east_variance, own) + across + more * east * east,
+    )
+
+
+@compiled
+def sight(mind: Mind, vehicle: int, is_new: bool, seen: LastSeen, error: PathError) -> None:
+    """Note where a vehicle was seen, and how far along its path the point abeam of it is.
+
+    Args:
+        mind: of the one who saw.
+        vehicle: who was seen.
+        is_new: [-] whether it was, in each lane.
+        seen: where and when.
+        error: where the one who saw is on its own path.
+    """
+    before, place_before = get_news(mind.others, vehicle), get_seen_place(mind.others, vehicle)
+    seen_at = Place(where(is_new, seen.north, 0.0), where(is_new, seen.east, 0.0), path_of(mind, vehicle))
+    found, place = project(seen_at, place_before)
+    speed = where(before.state == before.state, before.path_speed, error.speed_profile)
+    learn(mind, vehicle, is_new, News(found.path_parameter, speed, seen.time_of_fix, before.phase))
+    put_last_seen(mind.others, vehicle, where(is_new, seen, get_last_seen(mind.others, vehicle)))
+    put_seen_place(mind.others, vehicle, where(is_new, place, place_before))
