@@ -22,8 +22,9 @@ from cardume.onboard.mind import ENVELOPE, OTHERS_WIDTH, OWN_WIDTH
 from cardume.signals import Reference, Report
 from cardume.simulation.engine import advance, think
 from cardume.simulation.fleet import VEHICLE, Held, Satellite, Tables
+from cardume.simulation.law_tables import PER_OTHER
 from cardume.simulation.plan import Plan
-from cardume.simulation.tables import PER_OTHER, USBL_COLUMNS, make_tables
+from cardume.simulation.tables import USBL_COLUMNS, make_tables
 from flying import LAWS
 from properties.flown import plan_of, same_bits
 from properties.test_independence import MEMBERS, mission

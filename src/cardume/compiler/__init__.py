@@ -1,16 +1,13 @@
 """The only place that knows Numba: what the rest of the package needs to write compiled code."""
 
+from cardume.compiler.bits import scale2, split2, to_bits, to_float
 from cardume.compiler.compiled import compiled, entry, source_stamp
 from cardume.compiler.lanes import (
     WIDTH,
     floor,
     negate,
-    scale2,
     some,
-    split2,
     sqrt,
-    to_bits,
-    to_float,
     where,
 )
 from cardume.compiler.records import Layout

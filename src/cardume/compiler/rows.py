@@ -16,8 +16,9 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import models, overload, register_model
 
+from cardume.compiler.bits import whole
 from cardume.compiler.compiled import INLINED
-from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, WORDS, spread, whole, widened
+from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, INT64, LANES, MASK, WIDTH, WORDS, spread, widened
 from cardume.compiler.primitive import primitive
 
 Rows = np.ndarray  # (k,) float64; how laws and records annotate a table

@@ -11,7 +11,7 @@ from cardume.missions.vehicle import Vehicle
 from cardume.onboard.messaging.codec import COMPACT
 from cardume.onboard.mind import Grid
 from cardume.simulation.plan import Choice, VehiclePlan
-from cardume.simulation.tables import MOST_SLOTS
+from cardume.simulation.sizes import MOST_SLOTS
 from cardume.units import show_quantity
 from cardume.world.acoustics.medium import Medium, medium_of
 from cardume.world.acoustics.modem import airtime
@@ -41,7 +41,7 @@ def time_on_air(plan: VehiclePlan) -> float:
     if plan.medium is not None:
         return airtime(plan.medium, plan.medium.payload)
     channel = plan.laws["acoustics"]
-    return _value(channel, "delay", 0.0)
+    return channel.value_or("delay", 0.0)
 
 
 def broadcast_slot(sender: VehiclePlan, distance: float, guard: float) -> float:
@@ -155,8 +155,8 @@ def _refuse_overflow(mission: Mission, vehicles: Sequence[VehiclePlan]) -> None:
     """More messages of a sender under way at once than the engine has room for: older ones would be overwritten."""
     for vehicle in vehicles:
         messaging = vehicle.laws["messaging"]
-        period = _value(messaging, "period", math.inf)
-        delay = max(_value(other.laws["acoustics"], "delay", 0.0) for other in vehicles)
+        period = messaging.value_or("period", math.inf)
+        delay = max(other.laws["acoustics"].value_or("delay", 0.0) for other in vehicles)
         if len(vehicles) > 1 and delay > MOST_SLOTS * period:
             raise mission.error(
                 f"vehicles.{vehicle.name}.messaging.period",
@@ -166,14 +166,10 @@ def _refuse_overflow(mission: Mission, vehicles: Sequence[VehiclePlan]) -> None:
             )
 
 
-def _value(choice: Choice, name: str, otherwise: float) -> float:
-    return choice.value(name) if any(p.name == name for p in choice.law.parameters) else otherwise
-
-
 def _sound_speed(plan: VehiclePlan) -> float:
     if plan.medium is not None:
         return plan.medium.sound_speed
-    return _value(plan.laws["acoustics"], "sound_speed", 1500.0) or 1500.0
+    return plan.laws["acoustics"].value_or("sound_speed", 1500.0) or 1500.0
 
 
 def _processing(plan: VehiclePlan) -> float:

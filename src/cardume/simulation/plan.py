@@ -26,6 +26,10 @@ class Choice:
         """One parameter, given or default."""
         return float(self.parameters.get(parameter, self._default(parameter)))
 
+    def value_or(self, parameter: str, otherwise: float) -> float:
+        """One parameter, given or default; of a law without it, something else."""
+        return self.value(parameter) if any(p.name == parameter for p in self.law.parameters) else otherwise
+
     def _default(self, parameter: str) -> float:
         return next(p.default for p in self.law.parameters if p.name == parameter)
 
@@ -104,6 +108,11 @@ class VehiclePlan:
     datasheet: Datasheet = Datasheet()
     medium: Medium | None = None
     grid: Grid | None = None
+
+    @property
+    def believed_start(self) -> tuple[float, float]:
+        """North and east [m] where it believes it starts: where it does, unless it is told otherwise."""
+        return self.estimate or (self.state.north, self.state.east)
 
 
 @dataclass(frozen=True)

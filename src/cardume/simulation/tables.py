@@ -9,7 +9,7 @@ import numpy as np
 
 from cardume.compiler import Layout
 from cardume.compiler.reach import fields_read
-from cardume.laws import COLUMNS, FAMILIES, Law
+from cardume.laws import COLUMNS, FAMILIES
 from cardume.maths.random import Key, random_key
 from cardume.onboard.mind import (
     OTHERS,
@@ -30,7 +30,6 @@ from cardume.onboard.mind import (
 from cardume.onboard.phases import DIVE, GATHER, GO, PHASES
 from cardume.paths.along import arc_length_at
 from cardume.paths.projection import point_at
-from cardume.paths.table import PathPlace
 from cardume.signals import Forecast, Noise, Question
 from cardume.simulation.fleet import (
     KEY,
@@ -38,7 +37,6 @@ from cardume.simulation.fleet import (
     NEVER,
     NUM_SENSORS,
     SEEN,
-    SENSORS,
     STREAMS,
     TIMING,
     VEHICLE,
@@ -49,21 +47,17 @@ from cardume.simulation.fleet import (
     Timing,
     Whole,
 )
+from cardume.simulation.law_tables import gain_table, handle_table, memory_table
 from cardume.simulation.memo import NO_MEMO, Memo
 from cardume.simulation.noise import NOISE_WIDTH
 from cardume.simulation.plan import Choice, Plan, VehiclePlan
 from cardume.simulation.recording import LOG, MESSAGE_LOG, NUM_COUNTS
 from cardume.simulation.score import BINS, FLEET_SCORES, HISTOGRAMS, RULES, SCORES, FleetScore
+from cardume.simulation.sizes import asks_for_fixes, message_room, num_slots, past_ticks, sensors_of
 from cardume.simulation.tick import TROUBLE_WIDTH
-from cardume.world.acoustics.modem import airtime
 
-FARTHEST_ANSWER = 3.0  # [s] on the way, beyond which an answer gives no USBL reading
-MOST_SLOTS = 64  # messages of one sender under way at once
 USBL_COLUMNS = 4
 CHANCES = ("sigma", "invalid")  # parts of the names of parameters of which chance takes no part where they are 0
-IN_PLANT_STEPS = ("autopilot", "model")  # called once a plant step, the others once a tick
-# Families that keep one memory for each vehicle of the fleet.
-PER_OTHER = frozenset({"coordination", "neighbors", "usbl", "acoustics"})
 
 
 def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: Memo = NO_MEMO) -> Tables:
@@ -80,16 +74,16 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: M
     """
     vehicles = [plan.vehicles[k] for k in plan.order]
     size = len(vehicles)
-    gains, memory = _gains(plan, vehicles, memo), _memories(vehicles, memo)
+    gains, memory = gain_table(plan, vehicles, memo), memory_table(vehicles, memo)
     graph, list_width, widest = memo.recall(
         "graph",
         (plan.hears, *(v.setup for v in vehicles)),
         lambda: _graph(plan, vehicles),
     )
-    slots, past_size = _slots(vehicles, plan.tick, memo), _past_size(vehicles, plan.tick, memo)
+    slots, past_size = num_slots(vehicles, plan.tick, memo), past_ticks(vehicles, plan.tick, memo)
     paths, path_starts = memo.recall("paths", tuple(v.path for v in vehicles), lambda: _paths(vehicles))
     records = math.ceil(plan.num_ticks * plan.tick / plan.log_period - 1e-9) + 1 if plan.log_period > 0 else 0
-    room = _message_room(plan, vehicles, widest) if records else 0
+    room = message_room(plan, vehicles, widest) if records else 0
     whole = Whole(
         size,
         plan.substeps,
@@ -105,12 +99,12 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: M
         int(plan.is_watched),
         int(any(_noise_pairs(v.laws["current"], memo) for v in vehicles if "current" in v.laws)),
         int(any(v.medium for v in vehicles)),
-        int(_asks(vehicles)),
+        int(asks_for_fixes(vehicles)),
     )
     blank = memo.recall("blank", (), lambda: _blank(whole, records, room), (whole, records, room))
     tables = blank._replace(
         tick=plan.tick,
-        handles=_handles(vehicles, lanes, memo) if with_laws else blank.handles,
+        handles=handle_table(vehicles, lanes, memo) if with_laws else blank.handles,
         gains=gains.ravel(),
         memory=memory.ravel(),
         paths=paths,
@@ -150,9 +144,7 @@ def _rows(plan: Plan, vehicles: Sequence[VehiclePlan], memo: Memo) -> dict[str, 
         "vehicles": table("vehicle row", [((v.state, v.place), None) for v in vehicles], _vehicle_row),
         "minds": table("mind row", [_told(v) for v in vehicles], _mind_row),
         "others": memo.recall("others", (known,), lambda: np.tile(known, len(vehicles))),
-        "timings": table(
-            "timing row", [(_sensors_of(v), tick) for v in vehicles], lambda v: _timing_row(v, tick, memo)
-        ),
+        "timings": table("timing row", [(sensors_of(v), tick) for v in vehicles], lambda v: _timing_row(v, tick, memo)),
         "orders": numbers,
         "features": features,
         "scores": table("score row", [((v.safety,), None) for v in vehicles], lambda v: _row(SCORES, v.safety)),
@@ -226,11 +218,11 @@ def _vehicle_row(vehicle: VehiclePlan) -> np.ndarray:
 
 def _told(vehicle: VehiclePlan) -> tuple[tuple[Any, ...], Hashable]:
     """The parts and values of which a mind's row is made."""
-    return (vehicle.setup, vehicle.datasheet, vehicle.orders, vehicle.path), (_estimate(vehicle), vehicle.grid)
+    return (vehicle.setup, vehicle.datasheet, vehicle.orders, vehicle.path), (vehicle.believed_start, vehicle.grid)
 
 
 def _mind_row(vehicle: VehiclePlan) -> np.ndarray:
-    believed = vehicle.setup, vehicle.datasheet, Whereabouts(*_estimate(vehicle)), Speech(), _first_phase(vehicle)
+    believed = vehicle.setup, vehicle.datasheet, Whereabouts(*vehicle.believed_start), Speech(), _first_phase(vehicle)
     return _row(OWN, *believed, *_unwritten(vehicle))
 
 
@@ -261,29 +253,16 @@ def _talk(vehicle: VehiclePlan) -> list[int]:
     return [int(law.asks_for(Question)), int(law.asks_for(Forecast)), int(vehicle.grid is not None)]
 
 
-def _asks(vehicles: Sequence[VehiclePlan]) -> bool:
-    """Whether a USBL reading comes with the answer to a question."""
-    return any("usbl" in v.laws and v.laws["messaging"].law.asks_for(Question) for v in vehicles)
-
-
 def _known_of(vehicle: VehiclePlan) -> np.ndarray:
     """All that the others know of a vehicle before the mission: where on its path it starts."""
     return _row(OTHERS, News(), Fresh(), Outlook(), LastSeen(), Told(), vehicle.place)
-
-
-def _estimate(vehicle: VehiclePlan) -> tuple[float, float]:
-    return vehicle.estimate or (vehicle.state.north, vehicle.state.east)
-
-
-def _sensors_of(vehicle: VehiclePlan) -> tuple[Choice | None, ...]:
-    return tuple(vehicle.laws.get(sensor) for sensor in SENSORS)
 
 
 def _timing_row(vehicle: VehiclePlan, tick: float, memo: Memo) -> np.ndarray:
     def timing(choice: Choice | None) -> np.ndarray:
         return memo.recall("timing", (choice,), lambda: _row(TIMING, _timing(choice, tick, memo)), tick)
 
-    return np.concatenate([timing(choice) for choice in _sensors_of(vehicle)])
+    return np.concatenate([timing(choice) for choice in sensors_of(vehicle)])
 
 
 def _timing(choice: Choice | None, tick: float, memo: Memo) -> Timing:
@@ -324,88 +303,6 @@ def _keys_without_seed(names: Sequence[str]) -> np.ndarray:
     return np.concatenate([*keys, random_key(0, "current")])
 
 
-def _handles(vehicles: Sequence[VehiclePlan], lanes: bool, memo: Memo) -> np.ndarray:
-    """(vehicle, family, 4) whole numbers: handle, first gain, first memory row, memory width."""
-    laws = [[(f, v.laws[f].law) for f in FAMILIES if f in v.laws] for v in vehicles]
-    parts = tuple(law for own in laws for _, law in own)
-    return memo.recall("handles", parts, lambda: _handles_of(laws, lanes), lanes)
-
-
-def _handles_of(laws: Sequence[Sequence[tuple[str, Law]]], lanes: bool) -> np.ndarray:
-    size = len(laws)
-    table = np.zeros((size, len(FAMILIES), COLUMNS), np.int64)
-    for row, own in zip(table, laws, strict=True):
-        gain = memory = 0
-        for family, law in own:
-            width = law.initial_memory().size
-            row[FAMILIES.index(family)] = law.handle(lanes), gain, memory, width
-            gain += law.gains_width
-            memory += width * _copies(family, size)
-    return table.ravel()
-
-
-def _gains(plan: Plan, vehicles: Sequence[VehiclePlan], memo: Memo) -> np.ndarray:
-    steps = dict.fromkeys(FAMILIES, plan.tick) | dict.fromkeys(IN_PLANT_STEPS, plan.tick / plan.substeps)
-
-    def gains(choice: Choice, step: float) -> np.ndarray:
-        return memo.recall("gains", (choice,), lambda: choice.law.gains(step, **choice.parameters), step)
-
-    def row(vehicle: VehiclePlan) -> np.ndarray:
-        parts = tuple(gains(vehicle.laws[f], steps[f]) for f in FAMILIES if f in vehicle.laws)
-        return memo.recall("all gains", parts, lambda: np.concatenate(parts or (np.zeros(0),)))
-
-    return _stacked([row(vehicle) for vehicle in vehicles], memo)
-
-
-def _memories(vehicles: Sequence[VehiclePlan], memo: Memo) -> np.ndarray:
-    size = len(vehicles)
-
-    def row(vehicle: VehiclePlan) -> np.ndarray:
-        parts = (vehicle.place, *(choice.law for choice in vehicle.laws.values()))
-        return memo.recall("memory", parts, lambda: _memory_row(vehicle, size), (size, _estimate(vehicle)))
-
-    return _stacked([row(vehicle) for vehicle in vehicles], memo)
-
-
-def _memory_row(vehicle: VehiclePlan, size: int) -> np.ndarray:
-    parts = [np.zeros(0)]
-    for family in FAMILIES:
-        if family in vehicle.laws:
-            start = _initial_memory(vehicle, family, vehicle.laws[family])
-            parts += [start] * _copies(family, size)
-    return np.concatenate(parts)
-
-
-def _copies(family: str, size: int) -> int:
-    """How many memories a law has: of coordination, one more for what the others think it does."""
-    return size + (family == "coordination") if family in PER_OTHER else 1
-
-
-def _initial_memory(vehicle: VehiclePlan, family: str, choice: Choice) -> np.ndarray:
-    """The law's own start; a place on the path is the vehicle's, a position law starts at its initial estimate."""
-    start = choice.law.initial_memory()
-    if family == "reference_point" and choice.law.memory_type is PathPlace:
-        start = np.array(vehicle.place)
-    if family == "position" and choice.law.memory_type is not None:
-        fields = choice.law.memory_type._fields
-        for name, value in zip(("north", "east"), _estimate(vehicle), strict=True):
-            if name in fields:
-                start[fields.index(name)] = value
-    return start
-
-
-def _stacked(rows: Sequence[np.ndarray], memo: Memo) -> np.ndarray:
-    """Rows under one another, filled up with zeros to the longest."""
-
-    def stack() -> np.ndarray:
-        table = np.zeros((len(rows), max(1, *(row.size for row in rows))))
-        for place, row in zip(table, rows, strict=True):
-            place[: row.size] = row
-        return table
-
-    return memo.recall("stacked", tuple(rows), stack)
-
-
 def _paths(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
     starts = np.cumsum([0, *(v.path.size for v in vehicles)])[:-1]
     return np.concatenate([v.path for v in vehicles]), starts.astype(np.int64)
@@ -426,56 +323,6 @@ def _graph(plan: Plan, vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, int
         for vehicle, members in enumerate(lists):
             table[kind, vehicle, : 1 + len(members)] = [len(members), *members]
     return table.ravel(), width, max(len(x) for x in sources)
-
-
-def _slots(vehicles: Sequence[VehiclePlan], tick: float, memo: Memo) -> int:
-    """How many messages of one sender can be under way: the longest delay over the shortest time between two.
-
-    Lanes share the places; where they may speak in different ticks there is one for every tick.
-    """
-
-    def value(vehicle: VehiclePlan, family: str, what: str, make: Callable[[VehiclePlan], float]) -> float:
-        return memo.recall(what, (vehicle.laws[family], vehicle.medium), lambda: make(vehicle), tick)
-
-    delays = [value(v, "acoustics", "longest delay", _delay) for v in vehicles]
-    intervals = [value(v, "messaging", "shortest interval", lambda v: _interval(v, tick)) for v in vehicles]
-    return min(MOST_SLOTS, math.ceil((max(delays) + 2.0) / min(intervals)) + 2)
-
-
-def _delay(vehicle: VehiclePlan) -> float:
-    """Longest time [s] from the sending of a message until it is read, but for the way."""
-    if vehicle.medium is not None:
-        return airtime(vehicle.medium, vehicle.medium.payload) + vehicle.medium.processing
-    return _parameter(vehicle.laws["acoustics"], "delay", 2.0)
-
-
-def _interval(vehicle: VehiclePlan, tick: float) -> float:
-    """Shortest time [s] between two messages of a vehicle, the same in all lanes."""
-    law = vehicle.laws["messaging"].law
-    if law.asks_for(Question) or law.asks_for(Forecast):
-        return tick
-    return _parameter(vehicle.laws["messaging"], "period", _parameter(vehicle.laws["messaging"], "slot", 0.5))
-
-
-def _parameter(choice: Choice, name: str, otherwise: float) -> float:
-    return choice.value(name) if any(p.name == name for p in choice.law.parameters) else otherwise
-
-
-def _past_size(vehicles: Sequence[VehiclePlan], tick: float, memo: Memo) -> int:
-    """How many ticks sensors look back, and this one."""
-
-    def longest(vehicle: VehiclePlan) -> float:
-        sensors = [choice for choice in _sensors_of(vehicle) if choice is not None]
-        return memo.recall("latency", tuple(sensors), lambda: max([0.0, *(c.value("latency") for c in sensors)]))
-
-    answer = max(_delay(v) for v in vehicles) + FARTHEST_ANSWER if _asks(vehicles) else 0.0
-    return 1 + max(math.ceil(answer / tick - 1e-9), *(round(longest(vehicle) / tick) for vehicle in vehicles))
-
-
-def _message_room(plan: Plan, vehicles: Sequence[VehiclePlan], widest: int) -> int:
-    messaging = [v.laws["messaging"] for v in vehicles]
-    periods = [_parameter(choice, "period", _parameter(choice, "slot", plan.tick)) for choice in messaging]
-    return int(len(vehicles) * widest * (plan.duration / max(plan.tick, min(periods)) + 2))
 
 
 def _counts(records: int, room: int, plan: Plan) -> np.ndarray:

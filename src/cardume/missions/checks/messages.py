@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from cardume.missions.checks.finding import Finding, setting, show
 from cardume.missions.checks.fixes import has_parameter, travel_time, waiting_time
 from cardume.missions.checks.scene import Craft, Scene
-from cardume.simulation.tables import MOST_SLOTS
+from cardume.simulation.sizes import MOST_SLOTS
 
 LONG_WAIT = 0.5  # of the readings' period
 
