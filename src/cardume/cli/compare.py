@@ -3,22 +3,23 @@
 import re
 import shlex
 import shutil
-import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from cardume.cli.drawing import Drawing, own_up
 from cardume.cli.options import allow_code_option, json_option, quiet_option, set_option
 from cardume.cli.progress import Progress
 from cardume.cli.stopping import Stopping
+from cardume.cli.text import filled
+from cardume.cli.version import version
 
 if TYPE_CHECKING:
     from cardume.studies.comparing import Comparison
 
-DONE, FAILED, BUG = 0, 3, 4
-WIDEST_TEXT = 100
+DONE, FAILED = 0, 3
 DEFAULT_RUNS = 20
 MOST_RUNS = 100_000
 
@@ -129,11 +130,17 @@ def _compare(request: Request, stopping: Stopping) -> int:
             progress=note,
             should_stop=stopping.is_asked,
         )
-    drawing = _Drawing(comparison, is_wanted=not (request.no_figures or stopping.is_asked()))
+
+    def draw(folder: Path) -> None:
+        from cardume.report.comparison_figure import save_comparison
+
+        save_comparison(comparison, folder)
+
+    drawing = Drawing(draw, is_wanted=not (request.no_figures or stopping.is_asked()))
     words = conclusions(comparison)
     try:
         directory, summary = keep_comparison(
-            destination, name, comparison, words=words, version=_version(), draw=drawing
+            destination, name, comparison, words=words, version=version(), draw=drawing
         )
     except ResultsError:
         if request.is_talkative:
@@ -143,37 +150,13 @@ def _compare(request: Request, stopping: Stopping) -> int:
     return _exit_code(comparison, drawing, stopping)
 
 
-class _Drawing:
-    """Draws the figure; a comparison is not lost for a figure that cannot be drawn."""
-
-    def __init__(self, comparison: "Comparison", is_wanted: bool) -> None:
-        self.comparison, self.is_wanted = comparison, is_wanted
-        self.problem: Exception | None = None
-
-    def __call__(self, folder: Path) -> None:
-        if not self.is_wanted:
-            return
-        from cardume.report.comparison_figure import save_comparison
-
-        try:
-            save_comparison(self.comparison, folder)
-        except OSError:
-            raise
-        except Exception as problem:
-            self.problem = problem
-
-
-def _exit_code(comparison: "Comparison", drawing: _Drawing, stopping: Stopping) -> int:
+def _exit_code(comparison: "Comparison", drawing: Drawing, stopping: Stopping) -> int:
     if stopping.is_asked():
         return stopping.exit_code
     if any(len(comparison.failures(arm)) == len(comparison.seeds) for arm in range(len(comparison.arms))):
         return FAILED
     if drawing.problem is not None:
-        from cardume.cli.bugs import save_traceback
-
-        where = save_traceback(drawing.problem)
-        click.echo(f"error: the figure could not be drawn, a bug in cardume; the details are in {where}", err=True)
-        return BUG
+        return own_up(drawing.problem, "the figure")
     return DONE
 
 
@@ -186,7 +169,7 @@ def _report(
         click.echo(json.dumps(summary, indent=2))
     elif not request.quiet:
         _say_numbers(request, comparison, words)
-        click.echo(f"\nWritten to {directory}\n{_filled(', '.join(summary['files']), indent='  ')}")
+        click.echo(f"\nWritten to {directory}\n{filled(', '.join(summary['files']), indent='  ')}")
         _say_next(request, comparison)
     if comparison.is_interrupted:
         flown = f"{len(comparison.seeds)} of {comparison.asked} seeds"
@@ -202,7 +185,7 @@ def _say_numbers(request: Request, comparison: "Comparison", words: Sequence[str
     click.echo(comparison_table(comparison, shutil.get_terminal_size().columns))
     click.echo()
     for sentence in words:
-        click.echo(_filled(sentence))
+        click.echo(filled(sentence))
 
 
 def _seed_words(seeds: Sequence[int]) -> str:
@@ -258,16 +241,3 @@ def _name(missions: Sequence[str]) -> str:
     """What a comparison is called: after its first mission."""
     stem = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(missions[0]).name.split(".")[0]).strip("-")[:64]
     return f"{stem or 'mission'}-compared"
-
-
-def _filled(text: str, indent: str = "") -> str:
-    room = max(40, min(shutil.get_terminal_size().columns, WIDEST_TEXT))
-    return textwrap.fill(
-        text, room, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
-
-
-def _version() -> str:
-    from cardume.cli.version import version
-
-    return version()

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from cardume.cli.drawing import own_up
 from cardume.cli.options import (
     allow_code_option,
     find_mission,
@@ -21,13 +22,14 @@ from cardume.cli.options import (
 )
 from cardume.cli.progress import Progress
 from cardume.cli.stopping import Stopped, Stopping
+from cardume.cli.text import filled
+from cardume.cli.version import version
 
 if TYPE_CHECKING:
     from cardume.missions.mission import Mission
     from cardume.simulation.flight import Flight
 
-DONE, MISSED, FAILED, BUG = 0, 1, 3, 4
-WIDEST_TEXT = 100
+DONE, MISSED, FAILED = 0, 1, 3
 
 
 class Request(NamedTuple):
@@ -92,7 +94,7 @@ def _run(request: Request, stopping: Stopping) -> int:
     drawing = Drawing(mission, flight, stopping)
     try:
         directory, summary = write_results(
-            destination, mission, flight, version=_version(), draw=None if request.no_figures else drawing
+            destination, mission, flight, version=version(), draw=None if request.no_figures else drawing
         )
     except (ResultsError, Stopped):
         if request.is_talkative:
@@ -122,7 +124,7 @@ class Drawing:
         try:
             save_figures(self.flight, folder / "figures")
             text = (folder / "mission.yaml").read_text(encoding="utf-8")
-            write_page(folder / FILE_NAME, run_of(self.mission, self.flight, text, _version()))
+            write_page(folder / FILE_NAME, run_of(self.mission, self.flight, text, version()))
         except LibraryMissing as problem:
             self.lacking = str(problem)
         except OSError:
@@ -137,13 +139,7 @@ def _exit_code(flight: "Flight", summary: dict[str, Any], drawing: Drawing, stop
     if stopping.is_asked():
         return stopping.exit_code
     if drawing.problem is not None:
-        from cardume.cli.bugs import save_traceback
-
-        where = save_traceback(drawing.problem)
-        click.echo(
-            f"error: figures or report could not be drawn, a bug in cardume; the details are in {where}", err=True
-        )
-        return BUG
+        return own_up(drawing.problem, "figures or report")
     return MISSED if summary["requirements_met"] is False else DONE
 
 
@@ -179,13 +175,11 @@ def _say_numbers(mission: "Mission", flight: "Flight") -> None:
             fg="green" if is_met else "red",
         )
     click.echo()
-    click.echo(_filled(meaning(flight, mission, verdicts), width))
+    click.echo(filled(meaning(flight, mission, verdicts)))
 
 
 def _say_files(directory: Path, files: Sequence[str]) -> None:
-    width = shutil.get_terminal_size().columns
-    click.echo(f"\nWritten to {directory}")
-    click.echo(_filled(", ".join(files), width, indent="  "))
+    click.echo(f"\nWritten to {directory}\n{filled(', '.join(files), indent='  ')}")
 
 
 def _say_next(request: Request, mission: "Mission", flight: "Flight") -> None:
@@ -229,16 +223,3 @@ def _worthwhile_change(mission: "Mission") -> tuple[str, str] | None:
         if isinstance(value, float) and value:
             return f"guidance.{name}={2 * value:.3g}", f"with twice the {name.replace('_', ' ')}"
     return None
-
-
-def _filled(text: str, width: int, indent: str = "") -> str:
-    room = max(40, min(width, WIDEST_TEXT))
-    return textwrap.fill(
-        text, room, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
-
-
-def _version() -> str:
-    from cardume.cli.version import version
-
-    return version()

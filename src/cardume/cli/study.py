@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from cardume.cli.drawing import own_up
 from cardume.cli.options import (
     allow_code_option,
     json_option,
@@ -18,7 +19,7 @@ from cardume.cli.options import (
 )
 from cardume.cli.progress import Progress, time_words
 from cardume.cli.stopping import Stopping
-from cardume.cli.study_answers import filled
+from cardume.cli.text import filled
 
 if TYPE_CHECKING:
     import xarray
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from cardume.studies.answers.results import Results
     from cardume.studies.forecast import Forecast
 
-DONE, FAILED, BUG = 0, 3, 4
+DONE, FAILED = 0, 3
 RUNS = Path("runs")
 SAMPLINGS = ("monte_carlo", "latin_hypercube", "sobol")
 
@@ -229,15 +230,7 @@ def _report(request: Request, directory: Path, runs: "xarray.Dataset", failed: i
         )
     if failed == runs["status"].size:
         return FAILED
-    return _own_up(drawn.problem) if drawn.problem is not None else DONE
-
-
-def _own_up(problem: Exception) -> int:
-    from cardume.cli.bugs import save_traceback
-
-    where = save_traceback(problem)
-    click.echo(f"error: figures or report could not be drawn, a bug in cardume; the details are in {where}", err=True)
-    return BUG
+    return own_up(drawn.problem, "figures or report") if drawn.problem is not None else DONE
 
 
 def _say_numbers(request: Request, results: "Results") -> None:

@@ -1,12 +1,13 @@
 """What `cardume study` says at its end, and `cardume report` of a study again."""
 
 import shutil
-import textwrap
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
+
+from cardume.cli.text import filled
 
 if TYPE_CHECKING:
     import xarray
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from cardume.studies.answers.results import Results
 
 STORE = "study.zarr"
-WIDEST_TEXT = 100
 
 
 class Drawn(NamedTuple):
@@ -68,19 +68,6 @@ def say_answers(results: "Results") -> None:
         click.echo(f"{table}\n")
     for sentence in study_words(results):
         click.echo(filled(sentence))
-
-
-def filled(text: str, indent: str = "") -> str:
-    """Text in lines that fit.
-
-    Args:
-        text: a sentence.
-        indent: before each line.
-    """
-    room = max(40, min(shutil.get_terminal_size().columns, WIDEST_TEXT))
-    return textwrap.fill(
-        text, room, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
 
 
 def report_study(

@@ -2,13 +2,12 @@
 
 import re
 import shlex
-import shutil
-import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from cardume.cli.drawing import Drawing, own_up
 from cardume.cli.options import (
     allow_code_option,
     json_option,
@@ -19,12 +18,13 @@ from cardume.cli.options import (
 )
 from cardume.cli.progress import Progress
 from cardume.cli.stopping import Stopping
+from cardume.cli.text import filled
+from cardume.cli.version import version
 
 if TYPE_CHECKING:
     from cardume.studies.tuning.tune import Tuning
 
-DONE, BUG = 0, 4
-WIDEST_TEXT = 100
+DONE = 0
 DEFAULT_RUNS, DEFAULT_TRIES = 24, 60
 
 
@@ -106,7 +106,6 @@ def tune(**given: Any) -> int:
 
 
 def _tune(request: Request, stopping: Stopping) -> int:
-    from cardume.cli.version import version
     from cardume.report.tuning.words import tuning_words
     from cardume.studies.tuning.keeping import keep_tuning, tuning_destination
     from cardume.studies.tuning.tune import tune as search
@@ -135,42 +134,20 @@ def _tune(request: Request, stopping: Stopping) -> int:
             progress=note,
             should_stop=stopping.is_asked,
         )
-    drawing = _Drawing(tuning, is_wanted=not (request.no_figures or stopping.is_asked()))
+
+    def draw(folder: Path) -> None:
+        from cardume.report.tuning.figure import save_tuning
+
+        save_tuning(tuning, folder)
+
+    drawing = Drawing(draw, is_wanted=not (request.no_figures or stopping.is_asked()))
     words = tuning_words(tuning)
     directory, summary = keep_tuning(destination, name, tuning, words=words, version=version(), draw=drawing)
     _report(request, tuning, words, directory, summary)
     if stopping.is_asked():
         click.echo(f"interrupted; the best of {len(tuning.tries)} tries is in {directory}", err=True)
         return stopping.exit_code
-    return _own_up(drawing.problem) if drawing.problem is not None else DONE
-
-
-class _Drawing:
-    """Draws the figure; a tuning is not lost for one that cannot be drawn."""
-
-    def __init__(self, tuning: "Tuning", is_wanted: bool) -> None:
-        self.tuning, self.is_wanted = tuning, is_wanted
-        self.problem: Exception | None = None
-
-    def __call__(self, folder: Path) -> None:
-        if not self.is_wanted:
-            return
-        from cardume.report.tuning.figure import save_tuning
-
-        try:
-            save_tuning(self.tuning, folder)
-        except OSError:
-            raise
-        except Exception as problem:
-            self.problem = problem
-
-
-def _own_up(problem: Exception) -> int:
-    from cardume.cli.bugs import save_traceback
-
-    where = save_traceback(problem)
-    click.echo(f"error: the figure could not be drawn, a bug in cardume; the details are in {where}", err=True)
-    return BUG
+    return own_up(drawing.problem, "the figure") if drawing.problem is not None else DONE
 
 
 def _report(request: Request, tuning: "Tuning", words: list[str], directory: Path, summary: dict[str, Any]) -> None:
@@ -186,8 +163,8 @@ def _report(request: Request, tuning: "Tuning", words: list[str], directory: Pat
         click.echo(tuning_table(tuning))
         click.echo()
         for sentence in words:
-            click.echo(_filled(sentence))
-        click.echo(f"\nWritten to {directory}\n{_filled(', '.join(summary['files']), indent='  ')}")
+            click.echo(filled(sentence))
+        click.echo(f"\nWritten to {directory}\n{filled(', '.join(summary['files']), indent='  ')}")
         _say_next(request, tuning, directory)
 
 
@@ -202,10 +179,3 @@ def _say_next(request: Request, tuning: "Tuning", directory: Path) -> None:
     click.echo("\nNext")
     for words, why in steps:
         click.echo(f"  cardume {shlex.join(words)}\n      {why}")
-
-
-def _filled(text: str, indent: str = "") -> str:
-    room = max(40, min(shutil.get_terminal_size().columns, WIDEST_TEXT))
-    return textwrap.fill(
-        text, room, initial_indent=indent, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
