@@ -18,9 +18,11 @@ from cardume.onboard.mind import (
 )
 from cardume.onboard.neighborhood import forget_news, learn
 from cardume.paths.projection import project
+from cardume.paths.table import PathPlace, place_near
 from cardume.signals import NOTHING, Measured, Motion, NavigationEstimate, PathError, Place
 
 USBL_WIDTH = 4  # range, azimuth, elevation, age
+UNSEEN = 5.0  # [m] of way after which another vehicle may have rounded a bend
 
 
 @compiled
@@ -137,10 +139,38 @@ def sight(mind: Mind, vehicle: int, is_new: bool, seen: LastSeen, error: PathErr
         seen: where and when.
         error: where the one who saw is on its own path.
     """
-    before, place_before = get_news(mind.others, vehicle), get_seen_place(mind.others, vehicle)
+    before = get_news(mind.others, vehicle)
     seen_at = Place(where(is_new, seen.north, 0.0), where(is_new, seen.east, 0.0), path_of(mind, vehicle))
-    found, place = project(seen_at, place_before)
+    state, place = place_of(seen_at, get_seen_place(mind.others, vehicle), before, seen.time_of_fix)
     speed = where(before.state == before.state, before.path_speed, error.speed_profile)
-    learn(mind, vehicle, is_new, News(found.path_parameter, speed, seen.time_of_fix, before.phase))
+    learn(mind, vehicle, is_new, News(state, speed, seen.time_of_fix, before.phase))
     put_last_seen(mind.others, vehicle, where(is_new, seen, get_last_seen(mind.others, vehicle)))
-    put_seen_place(mind.others, vehicle, where(is_new, place, place_before))
+    put_seen_place(mind.others, vehicle, where(is_new, place, get_seen_place(mind.others, vehicle)))
+
+
+@compiled
+def place_of(seen_at: Place, was: PathPlace, before: News, time: float) -> tuple[float, PathPlace]:
+    """How far along a vehicle is [m], and where on its path.
+
+    A foot is looked for from where the vehicle was seen last.  Out of sight it may have rounded a bend meanwhile, and
+    from the leg before that the search would not find it: then also from where it is expected by now.  The foot that
+    is nearer counts.
+
+    Args:
+        seen_at: where it is seen, and its path.
+        was: where on the path it was seen last.
+        before: what was known of it.
+        time: [s] of the sighting.
+    """
+    found, place = project(seen_at, was)
+    state = found.path_parameter
+    known = before.state == before.state
+    expected = where(known, before.state + before.path_speed * (time - before.time_of_validity), state)
+    ahead = place_near(seen_at.path, expected, place.segment)
+    unseen = ahead.arc_length - was.arc_length
+    strayed = known & ((unseen > UNSEEN) | (unseen < -UNSEEN))
+    if some(strayed):
+        other, elsewhere = project(seen_at, where(strayed, ahead, was))
+        nearer = strayed & (abs(other.cross_track) < abs(found.cross_track))
+        state, place = where(nearer, other.path_parameter, state), where(nearer, elsewhere, place)
+    return state, place

@@ -156,3 +156,18 @@ def start_at(path: Rows, arc_length: float) -> PathPlace:
         arc_length: [m] on the own path.
     """
     return PathPlace(segment_at(path, arc_length, ARC_START), arc_length)
+
+
+@compiled
+def place_near(path: Rows, path_parameter: float, guess: float) -> PathPlace:
+    """Memory of a vehicle that is abeam of where its formation has come to.
+
+    Args:
+        path: (n,) path table.
+        path_parameter: [m] gamma of the vehicle.
+        guess: [-] number of the segment where it probably is.
+    """
+    gamma = path_parameter + load(path, AHEAD)
+    segment = segment_near(path, gamma, REFERENCE_START, guess)
+    beyond = (gamma - segment_value(path, segment, REFERENCE_START)) * segment_value(path, segment, STRETCH)
+    return PathPlace(segment, segment_value(path, segment, ARC_START) + beyond)
