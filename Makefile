@@ -81,6 +81,7 @@ screens: setup-dev
 pictures: setup-dev
 	@$(BIN)/python examples/gallery.py
 	@$(BIN)/python examples/studies.py
+	@$(BIN)/python examples/modem.py
 
 size: setup
 	@$(BIN)/python .ci/size.py
