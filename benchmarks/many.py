@@ -55,13 +55,20 @@ def _fly(count: int, seconds: float) -> None:
     """Runs in the other process: prints what it took."""
     from benchmarks.workloads import HAS_LANES, MISSION
     from cardume.missions.available import catalog
+    from cardume.missions.drawing import Drawer
     from cardume.missions.opening import open_mission
-    from cardume.studies.flying import fly_seeds, prepare
+    from cardume.missions.planning import make_plan
+    from cardume.simulation.memo import Memo
+    from cardume.simulation.tables import make_tables
+    from cardume.studies.flying import fly_seeds
 
     mission = open_mission(MISSION, [f"duration={seconds} s", *DRAWN])
     fly_seeds(mission, range(8), lanes=HAS_LANES)  # compiles
     begin = time.thread_time()
-    prepare(mission, range(min(count, 400)), catalog(), HAS_LANES)
+    drawer, known, memo = Drawer(mission), catalog(), Memo()
+    for seed in range(min(count, 400)):
+        plan = make_plan(drawer.draw(seed)[0], known, memo).plan
+        make_tables(plan, HAS_LANES, memo=memo)
     preparing = (time.thread_time() - begin) / min(count, 400)
     before = resource.getrusage(resource.RUSAGE_SELF)
     begin = time.perf_counter()

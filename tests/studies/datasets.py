@@ -1,5 +1,7 @@
 """Data sets of studies, made up for tests: as cardume study writes them, with numbers that are known."""
 
+import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -7,9 +9,20 @@ import numpy as np
 import xarray
 
 from cardume.simulation.flight import METRICS
-from cardume.studies.answers.results import read_limit
+from cardume.studies.answers.results import Limit
 
 Swept = Mapping[str, tuple[Sequence[Any], str]]  # key: options and their unit
+
+
+LIMIT = re.compile(r"(?:(?P<vehicle>.+): )?(?P<metric>[a-z]\w*) (?P<bound><=|>=) (?P<value>\S+)")
+
+
+def read_limit(text: str) -> Limit:
+    """The limit of `cross_track_rms <= 0.5 m` or `port: depth_max <= its limit`."""
+    found = LIMIT.match(text)
+    assert found is not None
+    bound = math.nan if found["value"] == "its" else float(found["value"])
+    return Limit(found["metric"], bound, 1.0 if found["bound"] == "<=" else -1.0, found["vehicle"] or "")
 
 
 def make_dataset(
@@ -55,5 +68,10 @@ def make_dataset(
         key: (key, np.array(options), {"units": unit}) for key, (options, unit) in (swept or {}).items()
     }
     coords |= {"run": np.arange(1, shape[-1] + 1), "vehicle": ["a"], "requirement": np.array(required, dtype="U")}
+    coords |= {
+        "limit": ("requirement", np.array([limit.bound for limit in limits])),
+        "limit_metric": ("requirement", np.array([limit.metric for limit in limits], dtype="U")),
+        "limit_vehicle": ("requirement", np.array([limit.vehicle for limit in limits], dtype="U")),
+    }
     attrs = {"sampling": "monte_carlo", "version": "0.1.0", "name": "made-up"} | changes
     return xarray.Dataset(variables, coords, attrs)

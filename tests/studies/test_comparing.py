@@ -13,7 +13,7 @@ from cardume.errors import InputError
 from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
-from cardume.studies import flying
+from cardume.studies import flying, work
 from cardume.studies.comparing import Comparison, check_seeds
 from cardume.studies.keeping import comparison_destination, keep_comparison, read_comparison, to_csv
 from studies.missions import LINE, NOISY
@@ -77,7 +77,7 @@ def test_lanes_and_scalars_give_the_same_bits(noisy: Comparison, monkeypatch: py
         used.append(len(plans))
         return real(plans, *rest)
 
-    monkeypatch.setattr(flying, "LANES_FROM", 0)
+    monkeypatch.setattr(work, "LANES_FROM", 0)
     monkeypatch.setattr(flying, "fly_joined", spy)
     laned = cardume.compare(read(NOISY), LAWS, runs=6)
     assert used == [6, 6]
@@ -87,7 +87,7 @@ def test_lanes_and_scalars_give_the_same_bits(noisy: Comparison, monkeypatch: py
     ragged = "duration={choose: [20 s, 30 s]}"
     drawn = cardume.compare(read(NOISY, ragged), LAWS, runs=6)
     assert used[2:] == [6, 6]
-    monkeypatch.setattr(flying, "LANES_FROM", 10**12)
+    monkeypatch.setattr(work, "LANES_FROM", 10**12)
     alone = cardume.compare(read(NOISY, ragged), LAWS, runs=6, metrics=drawn.metrics)
     for metric in drawn.metrics:
         assert np.array_equal(drawn.values(metric), alone.values(metric), equal_nan=True)

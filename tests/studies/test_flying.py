@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 import cardume
+from cardume.errors import MissionError
 from cardume.missions.available import catalog
 from cardume.missions.drawing import draw
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
 from cardume.missions.summary import judge
+from cardume.studies import flying
 from cardume.studies.flying import RunTable, fly_seeds
 from studies.missions import NOISY
 
@@ -116,3 +118,29 @@ def test_whatever_is_drawn_a_row_is_the_mission_flown_alone(lanes: bool) -> None
             assert (table.got[k, j], table.met[k, j]) == (verdict.got, verdict.met)
             when = np.nan if verdict.first_violated is None else verdict.first_violated
             assert np.array_equal(table.violated_at[k, j], when, equal_nan=True)
+
+
+def test_a_run_that_cannot_be_drawn_costs_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tick of 0.05 s is no whole multiple of a plant step of 0.1 s: a quarter of the draws; each flies once."""
+    mission = read(NOISY, "tick={choose: [0.1 s, 0.05 s]}", "plant_step={choose: [0.05 s, 0.1 s]}", "duration=6 s")
+    flown: list[int] = []
+    real = flying.fly_alone
+
+    def spy(plan, *rest):  # type: ignore[no-untyped-def]
+        flown.append(plan.seed)
+        return real(plan, *rest)
+
+    monkeypatch.setattr(flying, "fly_alone", spy)
+    with pytest.raises(MissionError, match="must be a whole multiple"):
+        fly_seeds(mission, range(20))
+    flown.clear()
+    for lanes in (False, True):
+        table = fly_seeds(mission, range(20), is_lenient=True, lanes=lanes)
+        assert table.seeds.tolist() == list(range(20))
+        assert 0 < table.is_refused.sum() < 20
+        assert all(
+            ("must be a whole multiple" in why) == no for why, no in zip(table.failure, table.is_refused, strict=True)
+        )
+        assert (np.isnan(table.metrics["fleet_energy"]) == table.is_refused).all()
+        if not lanes:
+            assert sorted(flown) == table.seeds[~table.is_refused].tolist()

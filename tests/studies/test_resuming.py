@@ -131,6 +131,14 @@ def test_two_damaged_chunks_of_one_portion_cost_it_once(whole: Path, copy: Path)
     assert_same(whole, copy)
 
 
+def test_an_interrupted_mending_is_not_told_as_complete(whole: Path, copy: Path) -> None:
+    corrupt(chunk_of(copy, "got"))
+    killing.fly(copy, resume=True, should_stop=lambda: True)
+    assert int((cardume.open_study(copy)["status"] == layout.NOT_FLOWN).sum()) == killing.PORTION
+    assert resumed(copy)[0] == killing.PORTION
+    assert_same(whole, copy)
+
+
 def test_a_corrupted_chunk_is_not_read_as_numbers(copy: Path) -> None:
     corrupt(chunk_of(copy))
     with pytest.raises(ValueError, match=r"(?i)crc|checksum"):

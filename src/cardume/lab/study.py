@@ -11,8 +11,9 @@ import numpy as np
 from cardume.errors import CardumeError
 from cardume.missions.mission import Mission
 from cardume.simulation.flight import METRICS
+from cardume.studies.constants import FLEET
 from cardume.studies.flying import fly_seeds, num_processors
-from cardume.studies.run_table import FLEET, RunTable
+from cardume.studies.run_table import RunTable
 
 FIRST, LATER = 4, 12  # missions in a portion: the first numbers come soon
 MOST_RUNS = 100_000

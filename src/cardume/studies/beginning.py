@@ -16,18 +16,14 @@ from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
 from cardume.studies.cases import Cases, cases_of
+from cardume.studies.constants import LARGEST_SEED
 from cardume.studies.distributing import Task, stamp
+from cardume.studies.files import digests_of, named_files, refuse_stale
 from cardume.studies.flying import Progress
-from cardume.studies.forecast import Forecast, Trial, check_that_something_varies, wants_lanes
-from cardume.studies.layout import (
-    Layout,
-    Portion,
-    chunk_shape,
-    expected_steps,
-    make_requirements,
-    make_variables,
-)
+from cardume.studies.forecast import Forecast, Trial, check_that_something_varies
+from cardume.studies.layout import Layout, Portion, chunk_shape, make_variables
 from cardume.studies.ledger import Ledger, digest_of
+from cardume.studies.required import wanted_of
 from cardume.studies.sampling import needed, sample_chances, sampling_note
 from cardume.studies.store import (
     STORE_NAME,
@@ -38,10 +34,10 @@ from cardume.studies.store import (
     remove_partial_files,
     write_block,
 )
+from cardume.studies.work import expected_steps, expected_ticks, wants_lanes
 from cardume.units import printable
 
 MOST_MISSIONS = 100_000_000
-LARGEST_SEED = 2**63 - 1
 SPARE = 1000  # seeds above those of the runs, for flights that are only tried
 
 
@@ -99,7 +95,8 @@ class Begun:
 
     def tasks(self) -> list[Task]:
         """What is left, as it is flown."""
-        lanes = wants_lanes(self.cases, len(self.layout.seeds))
+        missions = self.cases.size * len(self.layout.seeds)
+        lanes = wants_lanes(expected_ticks(self.cases.mission) * missions)
         return [
             Task(
                 number=number,
@@ -109,6 +106,7 @@ class Begun:
                 chances={key: values[portion.runs] for key, values in self.layout.chances.items()},
                 allow_code=self.allow_code,
                 engine=stamp(),
+                files=self.layout.attrs["files"],
                 lanes=lanes,
             )
             for number, portion in self.left.items()
@@ -164,15 +162,16 @@ def begin(
     count = _checked(runs, cases)
     seeds = cases.mission.seed + np.arange(count, dtype=np.int64)
     chances = sample_chances([one.key for one in cases.drawn], count, sampling, cases.mission.seed)
+    wanted, named = wanted_of(cases.mission), named_files(cases.mission, allow_code)
+    refuse_stale(named)
     trial = Trial(cases, seeds, chances, allow_code, progress)
-    tables = trial.glimpses()
     layout = Layout(
         axes=cases.axes,
         seeds=seeds,
         vehicles=tuple(vehicle.name for vehicle in cases.mission.vehicles),
-        requirements=make_requirements(tables),
-        variables=make_variables(cases.drawn, tables),
-        chunk=chunk_shape((*cases.shape, count), expected_steps(cases)),
+        requirements=wanted,
+        variables=make_variables(cases.drawn, trial.glimpses(), wanted),
+        chunk=chunk_shape((*cases.shape, count), expected_steps(cases.mission)),
         chances=chances,
         attrs={
             "title": f"study of {cases.mission.name}",
@@ -185,6 +184,7 @@ def begin(
             "seed": cases.mission.seed,
             "runs": count,
             "command": command,
+            "files": digests_of(named),
         },
     )
     _refuse_too_large(directory, layout)

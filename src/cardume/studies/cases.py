@@ -1,6 +1,5 @@
 """The cases of a study: every combination of the options of the sweeps in its mission."""
 
-import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -91,14 +90,6 @@ class Cases:
             return self.mission
         return with_options(self.mission, {axis.key: axis.options[k] for axis, k in zip(self.axes, place, strict=True)})
 
-    def words(self, place: Place) -> str:
-        """A case for people.
-
-        Args:
-            place: of the option of each axis.
-        """
-        return ", ".join(f"{axis.key} {axis.values[k]}" for axis, k in zip(self.axes, place, strict=True))
-
     def each_option_once(self) -> list[Place]:
         """Places in which every option of every axis appears, the others at their first."""
         first = (0,) * len(self.axes)
@@ -157,12 +148,3 @@ def _drawn(mission: Mission) -> tuple[Drawn, ...]:
         before = found.get(key, Drawn(key, unit, True))
         found[key] = Drawn(key, unit, is_number and before.is_number)
     return tuple(found.values())
-
-
-def all_places(shape: Place) -> list[Place]:
-    """Every place of a grid, the last axis first.
-
-    Args:
-        shape: options of each axis.
-    """
-    return list(itertools.product(*(range(size) for size in shape)))

@@ -12,25 +12,9 @@ from cardume.errors import InputError
 from cardume.missions.mission import Mission
 from cardume.simulation.flight import METRICS
 from cardume.studies.arms import Arm, Given, as_text, check_metrics, make_arms
+from cardume.studies.constants import DEFAULT_COMPARED, FLEET, LARGEST_SEED, MOST_COMPARED, TRIFLE, USUAL
 from cardume.studies.flying import Progress, RunTable, fly_all
-from cardume.studies.run_table import FLEET
 from cardume.studies.statistics import CONFIDENCE, Estimate, estimate, is_clear, paired_difference, shared_confidence
-
-DEFAULT_RUNS = 20
-MOST_RUNS = 100_000
-LARGEST_SEED = 2**63 - 1
-TRIFLE = 1e-9  # of any metric, in its unit
-
-# What is shown unless the user asks for others: the first few of these that have numbers.
-USUAL = (
-    "cross_track_rms",
-    "settling_time",
-    "position_error_rms",
-    "coordination_error_rms",
-    "formation_error_rms",
-    "yaw_effort",
-    "energy",
-)
 
 
 @dataclass(frozen=True)
@@ -102,7 +86,7 @@ class Comparison:
             arm: its place.
         """
         runs = self.runs[arm]
-        return (int(runs.met.all(axis=1).sum()), len(runs)) if runs.requirements else None
+        return (int(runs.all_met.sum()), len(runs)) if runs.requirements else None
 
     def failures(self, arm: int) -> list[tuple[int, str]]:
         """Seed and reason of each run of an arm that failed while flying.
@@ -121,7 +105,7 @@ def compare(
     missions: Given | Sequence[Given],
     vary: Mapping[str, Sequence[object]] | None = None,
     *,
-    runs: int = DEFAULT_RUNS,
+    runs: int = DEFAULT_COMPARED,
     seeds: Sequence[int] | None = None,
     metrics: Sequence[str] = (),
     overrides: Sequence[str] = (),
@@ -197,8 +181,8 @@ def check_seeds(seeds: Sequence[int]) -> tuple[int, ...]:
     """
     if not seeds:
         raise InputError("no seeds are given; fly at least one, as runs=20 or seeds=range(1, 21)")
-    if len(seeds) > MOST_RUNS:
-        raise InputError(f"{len(seeds)} seeds are given; compare at most {MOST_RUNS} at a time")
+    if len(seeds) > MOST_COMPARED:
+        raise InputError(f"{len(seeds)} seeds are given; compare at most {MOST_COMPARED} at a time")
     if wrong := [seed for seed in seeds if not 0 <= seed <= LARGEST_SEED]:
         raise InputError(f"{wrong[0]} is no seed; a seed is a whole number from 0 to {LARGEST_SEED}")
     if len(set(seeds)) < len(seeds):

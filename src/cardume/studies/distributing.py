@@ -1,8 +1,9 @@
 """Who flies the portions of a study: threads of this process, or the workers of a Dask cluster.
 
-Only data goes over the wire: the mission's text, places in its sweeps, seeds and chances; numbers come back.  Tables
-hold machine addresses, so they are built where they are flown.  A mission's own laws are imported by a worker from the
-folders that the user allowed, and only from those.
+Only data is sent: the mission's text, places in its sweeps, seeds and chances; numbers come back.  Tables hold machine
+addresses, so they are built where they are flown.  A mission's own laws are imported by a worker from the folders that
+the user allowed, and only from those.  Dask packs all of it by pickle, so scheduler and workers must be trusted: they
+could run anything here, as whoever reaches them could there.
 """
 
 import hashlib
@@ -23,9 +24,12 @@ from cardume.compiler import source_stamp
 from cardume.errors import CardumeError, InputError, MissionError
 from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
+from cardume.missions.mission import Mission
 from cardume.studies.cases import Cases, Place, cases_of
-from cardume.studies.flying import fly_all, fly_seeds, num_processors
-from cardume.studies.run_table import RunTable, refused
+from cardume.studies.files import Named, digests_of, named_files, refuse_changed, refuse_stale
+from cardume.studies.flying import fly_all, num_processors
+from cardume.studies.required import Wanted, wanted_of
+from cardume.studies.run_table import Refused, RunTable, tabulate
 from cardume.studies.sampling import needed
 from cardume.units import printable
 
@@ -53,6 +57,7 @@ class Task:
         chances: by key (run,) numbers in (0, 1).
         allow_code: folders from which laws may be imported.
         engine: the sources that are to fly it.
+        files: that the mission's numbers come from, with their digests.
         lanes: whether eight missions share a register.
     """
 
@@ -63,6 +68,7 @@ class Task:
     chances: Mapping[str, np.ndarray]
     allow_code: tuple[str, ...]
     engine: str
+    files: Mapping[str, str]
     lanes: bool
 
     @property
@@ -218,30 +224,46 @@ def fly_task(
         Tables whose rows, one after another, are the seeds of the first case, then of the next; fewer after a stop.
 
     Raises:
-        InputError: the engine here is another one, or the mission cannot be read here.
+        InputError: the engine here or a file is another one, or the mission cannot be read here.
     """
     if task.engine != stamp():
         raise InputError(
             f"the cardume here ({stamp()}) is not that of the study ({task.engine}); install the same version wherever"
             " it is flown"
         )
-    cases = _cases(task.text, task.allow_code)
-    how: dict[str, Any] = {
-        "allow_code": task.allow_code,
-        "threads": threads,
-        "lanes": task.lanes or None,
-        "should_stop": should_stop,
+    cases, wanted, named = _read(task.text, task.allow_code)
+    refuse_changed(task.files, digests_of(named), "the study", "copy it from where the study was begun")
+    refuse_stale(named)
+    missions: dict[Place, Mission] = {}
+    whys: dict[Place, str] = {}
+    for place in task.places:
+        try:
+            missions[place] = cases.at(place)
+        except MissionError as problem:  # options that do not fit one another; the other cases are flown
+            whys[place] = str(problem)
+    refused = {
+        place: tabulate(cases.mission, [Refused(int(seed), why) for seed in task.seeds], wanted)
+        for place, why in whys.items()
     }
 
     def note(stage: str, done: int, _total: int) -> None:
         if stage == "compare":
             progress(done)
 
-    try:
-        missions = [cases.at(place) for place in task.places]
-        return fly_all(missions, task.seeds, chances=task.chances, progress=note, **how)
-    except MissionError:  # of some run or case; the others are flown without it
-        return [table for place in task.places for table in _fly_case(cases, place, task, how)]
+    flown = fly_all(
+        list(missions.values()),
+        task.seeds,
+        chances=task.chances,
+        allow_code=task.allow_code,
+        threads=threads,
+        lanes=task.lanes or None,
+        wanted=wanted,
+        is_lenient=True,
+        should_stop=should_stop,
+        progress=note,
+    )
+    found = dict(zip(missions, flown, strict=True)) | refused
+    return [found[place] for place in task.places]
 
 
 def fly_remotely(task: Task) -> list[RunTable]:
@@ -258,36 +280,16 @@ def stamp() -> str:
     """A hash of every source file that the numbers of a run depend on."""
     package = Path(__file__).parents[1]
     digest = hashlib.blake2s(source_stamp().encode(), digest_size=8)
-    files = [package / "studies" / name for name in ("flying.py", "run_table.py")]
+    files = [package / "studies" / name for name in ("flying.py", "required.py", "run_table.py")]
     for file in sorted([*files, *(package / "missions").rglob("*.py")]):
         digest.update(file.relative_to(package).as_posix().encode() + file.read_bytes())
     return digest.hexdigest()
 
 
 @lru_cache(maxsize=4)
-def _cases(text: str, allow_code: tuple[str, ...]) -> Cases:
-    return cases_of(parse_mission(text, catalog(allow_code), source="the mission of the study"))
-
-
-def _fly_case(cases: Cases, place: Place, task: Task, how: Mapping[str, Any]) -> list[RunTable]:
-    """A case, without the runs whose drawn values do not fit one another; these are refused, and not the study."""
-    try:
-        mission = cases.at(place)
-    except MissionError as problem:
-        some = cases.at(cases.each_option_once()[0])
-        return [refused(some, int(seed), str(problem)) for seed in task.seeds]
-
-    def fly(some: slice) -> list[RunTable]:
-        seeds, chances = task.seeds[some], {key: values[some] for key, values in task.chances.items()}
-        try:
-            return [fly_seeds(mission, seeds, chances=chances, **how)]
-        except MissionError as problem:
-            if len(seeds) == 1:
-                return [refused(mission, int(seeds[0]), str(problem))]
-        middle = some.start + len(seeds) // 2
-        return fly(slice(some.start, middle)) + fly(slice(middle, some.stop))
-
-    return fly(slice(0, len(task.seeds)))
+def _read(text: str, allow_code: tuple[str, ...]) -> tuple[Cases, tuple[Wanted, ...], Named]:
+    cases = cases_of(parse_mission(text, catalog(allow_code), source="the mission of the study"))
+    return cases, wanted_of(cases.mission), named_files(cases.mission, allow_code)
 
 
 def _connected(distributed: Any, address: str) -> Any:

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cardume.compiler import WIDTH
+from cardume.errors import MissionError
 from cardume.missions.available import catalog
 from cardume.missions.catalog import Catalog
 from cardume.missions.drawing import Drawer
@@ -30,16 +31,15 @@ from cardume.simulation.plan import Plan
 from cardume.simulation.side_by_side import join, own, shape_of
 from cardume.simulation.tables import make_tables
 from cardume.simulation.warming import warm_up
-from cardume.studies.run_table import Run, RunTable, stack, tabulate
+from cardume.studies.required import Wanted, wanted_of
+from cardume.studies.run_table import Refused, Run, RunTable, stack, tabulate
+from cardume.studies.work import wants_lanes
 
-__all__ = ["LANES_FROM", "Progress", "RunTable", "fly_all", "fly_seeds", "num_processors", "prepare"]
+__all__ = ["Progress", "RunTable", "fly_all", "fly_seeds", "num_processors"]
 
 Progress = Callable[[str, int, int], None]
 Stop = Callable[[], bool]
 
-# Vehicle-ticks from which flying eight missions in one register saves more than compiling the engine for it
-# takes, where that was never done: about a minute on two processors.
-LANES_FROM = 100_000_000
 PORTION = 128  # missions that are planned before those of them that can share lanes are put together
 FEW = 2  # missions that fly faster one by one than in lanes
 MEASURED = ("scores", "histograms", "fleet_score", "trouble")
@@ -53,6 +53,7 @@ def fly_seeds(
     allow_code: Iterable[str | Path] = (),
     threads: int | None = None,
     lanes: bool | None = None,
+    is_lenient: bool = False,
     should_stop: Stop = lambda: False,
     progress: Progress = lambda stage, done, total: None,
 ) -> RunTable:
@@ -66,6 +67,7 @@ def fly_seeds(
         allow_code: folders from which laws may be imported.
         threads: how many at once; None for as many as there are processors.
         lanes: whether eight missions share a register; None where that saves time.
+        is_lenient: whether a run whose drawn values do not fit one another is a row that says so, and no error.
         should_stop: asked every few milliseconds.
         progress: called with "compile" or "fly", how much is done, and how much there is.
 
@@ -82,6 +84,7 @@ def fly_seeds(
         allow_code=allow_code,
         threads=threads,
         lanes=lanes,
+        is_lenient=is_lenient,
         should_stop=should_stop,
         progress=lambda stage, done, total: progress("fly" if stage == "compare" else stage, done, total),
     )
@@ -96,6 +99,8 @@ def fly_all(
     allow_code: Iterable[str | Path] = (),
     threads: int | None = None,
     lanes: bool | None = None,
+    wanted: Sequence[Wanted] | None = None,
+    is_lenient: bool = False,
     should_stop: Stop = lambda: False,
     progress: Progress = lambda stage, done, total: None,
 ) -> list[RunTable]:
@@ -108,6 +113,8 @@ def fly_all(
         allow_code: folders from which laws may be imported.
         threads: how many at once.
         lanes: whether eight missions share a register.
+        wanted: what all are judged by; None: what each requires.
+        is_lenient: whether a run whose drawn values do not fit one another is a row that says so, and no error.
         should_stop: asked every few milliseconds.
         progress: called with "compile" or "compare", how much is done, and how much there is.
 
@@ -117,16 +124,18 @@ def fly_all(
     Raises:
         InputError: a mission that cannot be flown.
     """
+    judged_by = [wanted_of(mission) if wanted is None else wanted for mission in missions]
     if not len(seeds):
-        return [tabulate(mission, []) for mission in missions]
+        return [tabulate(mission, [], some) for mission, some in zip(missions, judged_by, strict=True)]
     known, threads = catalog(allow_code), threads or num_processors()
     given = [{key: float(values[k]) for key, values in (chances or {}).items()} for k in range(len(seeds))]
-    makers = [_Maker(mission, known) for mission in missions]
-    first = [maker.make(int(seeds[0]), given[0]) for maker in makers]  # what is wrong is told before any flies
+    makers = [_Maker(mission, known, is_lenient) for mission in missions]
+    firsts = (maker.first(seeds, given) for maker in makers)  # what is wrong is told before any flies
+    plans = [one.plan for one in firsts if one is not None]
     if lanes is None:
-        lanes = sum(one.plan.num_ticks * len(one.plan.vehicles) for one in first) * len(seeds) >= LANES_FROM
-    _warm_up([one.plan for one in first], lanes, progress)
-    portion = PORTION if lanes else max(1, math.ceil(2 * threads / len(missions)))
+        lanes = wants_lanes(sum(plan.num_ticks * len(plan.vehicles) for plan in plans) * len(seeds))
+    _warm_up(plans, lanes, progress)
+    portion = PORTION if lanes else max(1, math.ceil(2 * threads / max(1, len(missions))))
     starts = range(0, len(seeds), portion)
     found: list[list[RunTable]] = [[] for _ in missions]
     done, total = 0, len(missions) * len(seeds)
@@ -142,27 +151,16 @@ def fly_all(
 
         for k, flying in _ahead(begun(), should_stop):
             runs = flying.wait()
-            if any(run.flown.stopped for run in runs):
+            if any(isinstance(run, Run) and run.flown.stopped for run in runs):
                 break  # what a stopped mission leaves is no number of a whole one
-            found[k].append(tabulate(missions[k], runs))
+            found[k].append(tabulate(missions[k], runs, judged_by[k]))
             done += len(runs)
             progress("compare", done, total)
-    tables = [stack(parts) if parts else tabulate(m, []) for m, parts in zip(missions, found, strict=True)]
+    tables = [
+        stack(parts) if parts else tabulate(mission, [], some)
+        for mission, some, parts in zip(missions, judged_by, found, strict=True)
+    ]
     return [table.first(min(map(len, tables))) for table in tables]
-
-
-def prepare(mission: Mission, seeds: Sequence[int], known: Catalog, lanes: bool) -> None:
-    """Draw, plan and write the tables of missions, and fly none: for measuring what that costs.
-
-    Args:
-        mission: without sweeps.
-        seeds: one mission each.
-        known: where its laws are found.
-        lanes: whether for eight in a register.
-    """
-    maker = _Maker(mission, known)
-    for seed in seeds:
-        maker.make(seed, {}, lanes)
 
 
 def num_processors() -> int:
@@ -181,13 +179,24 @@ class _Made(NamedTuple):
 class _Maker:
     """Plans one mission for many seeds."""
 
-    def __init__(self, mission: Mission, known: Catalog) -> None:
+    def __init__(self, mission: Mission, known: Catalog, is_lenient: bool = False) -> None:
         self._drawer, self._known, self._memo = Drawer(mission), known, Memo()
+        self._is_lenient = is_lenient
 
-    def make(self, seed: int, chances: Mapping[str, float], lanes: bool = False) -> _Made:
-        mission, drawn = self._drawer.draw(seed, chances)
-        plan = replace(make_plan(mission, self._known, self._memo).plan, log_period=0.0)
-        return _Made(plan, make_tables(plan, lanes, memo=self._memo), drawn)
+    def make(self, seed: int, chances: Mapping[str, float], lanes: bool = False) -> _Made | Refused:
+        try:
+            mission, drawn = self._drawer.draw(seed, chances)
+            plan = replace(make_plan(mission, self._known, self._memo).plan, log_period=0.0)
+            return _Made(plan, make_tables(plan, lanes, memo=self._memo), drawn)
+        except MissionError as problem:
+            if not self._is_lenient:
+                raise
+            return Refused(seed, str(problem))
+
+    def first(self, seeds: Sequence[int] | np.ndarray, chances: Sequence[Mapping[str, float]]) -> _Made | None:
+        """The first of the missions that can be flown."""
+        made = (self.make(int(seed), some) for seed, some in zip(seeds, chances, strict=True))
+        return next((one for one in made if isinstance(one, _Made)), None)
 
     def alone(self, made: _Made) -> _Made:
         """The same mission, with tables for the engine that flies one."""
@@ -198,12 +207,18 @@ class _Portion:
     """Missions that fly while others are planned."""
 
     def __init__(
-        self, maker: _Maker, made: Sequence[_Made], lanes: bool, pool: ThreadPoolExecutor, should_stop: Stop
+        self,
+        maker: _Maker,
+        made: Sequence[_Made | Refused],
+        lanes: bool,
+        pool: ThreadPoolExecutor,
+        should_stop: Stop,
     ) -> None:
         self._made = made
         self._jobs: list[tuple[Sequence[int], Future[list[Flown]]]] = []
-        for places in _groups(made) if lanes else [[k] for k in range(len(made))]:
-            some = [made[k] for k in places]
+        able = {k: one for k, one in enumerate(made) if isinstance(one, _Made)}
+        for places in _groups(able) if lanes else [[k] for k in able]:
+            some = [able[k] for k in places]
             if lanes and len(some) > FEW:
                 self._jobs.append((places, pool.submit(_fly_in_lanes, some, should_stop)))
                 continue
@@ -211,18 +226,18 @@ class _Portion:
                 alone = maker.alone(one) if lanes else one
                 self._jobs.append(([k], pool.submit(_fly_alone, alone, should_stop)))
 
-    def wait(self) -> list[Run]:
+    def wait(self) -> list[Run | Refused]:
         """The missions after their flight, in order."""
         flown: dict[int, Flown] = {}
         for places, job in self._jobs:
             flown |= zip(places, job.result(), strict=True)
-        return [Run(one.drawn, flown[k]) for k, one in enumerate(self._made)]
+        return [one if isinstance(one, Refused) else Run(one.drawn, flown[k]) for k, one in enumerate(self._made)]
 
 
-def _groups(made: Sequence[_Made]) -> Iterator[list[int]]:
+def _groups(made: Mapping[int, _Made]) -> Iterator[list[int]]:
     """Places of missions that can share lanes; those that last equally long stand together."""
     alike: dict[Any, list[int]] = {}
-    for k, one in enumerate(made):
+    for k, one in made.items():
         alike.setdefault(shape_of(one.tables), []).append(k)
     for places in alike.values():
         places.sort(key=lambda k: made[k].plan.num_ticks)

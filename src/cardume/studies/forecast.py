@@ -2,20 +2,19 @@
 
 import time
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from cardume.errors import InputError, MissionError
-from cardume.missions.drawing import draw
+from cardume.missions.drawing import Drawer
 from cardume.missions.mission import Mission
 from cardume.studies.cases import Cases
-from cardume.studies.flying import LANES_FROM, Progress, fly_seeds
-from cardume.studies.layout import expected_steps
+from cardume.studies.flying import Progress, fly_seeds
 from cardume.studies.run_table import RunTable
+from cardume.studies.work import expected_steps, expected_ticks, wants_lanes
 
 GLIMPSE = 2.0  # [s] of a mission, in which every metric that it will have appears
 MOST_PROBED = 200  # options that are looked at
@@ -71,7 +70,7 @@ class Trial:
     ) -> None:
         self._cases, self._seeds, self._chances = cases, seeds, chances
         self._allow_code, self._progress = allow_code, progress
-        self._lanes = wants_lanes(cases, len(seeds))
+        self._lanes = wants_lanes(expected_ticks(cases.mission) * cases.size * len(seeds))
 
     def glimpses(self) -> tuple[RunTable, ...]:
         """The first moments of every option of every sweep: every metric and requirement is in one of them.
@@ -90,9 +89,7 @@ class Trial:
         return any(self._differs(self._cases.at(places[k])) for k in chosen)
 
     def _differs(self, mission: Mission) -> bool:
-        table = self._fly(mission, 2)
-        columns = (*table.metrics.values(), table.failed_at)
-        return not all(np.array_equal(values[:1], values[1:], equal_nan=True) for values in columns)
+        return self._fly(mission, 2).is_varied
 
     def seconds(self) -> float:
         """How long [s] one processor takes for one mission of the study, in the mean of its cases."""
@@ -105,36 +102,50 @@ class Trial:
             begin = time.perf_counter()
             self._fly(self._first, SAMPLE)
             taken = (time.perf_counter() - begin) / SAMPLE
-        of_first = expected_steps(replace(self._cases, mission=self._first))
-        return taken * expected_steps(self._cases) / max(of_first, 1.0)
+        return taken * expected_steps(self._cases.mission) / max(expected_steps(self._first), 1.0)
 
     @property
     def _first(self) -> Mission:
         return self._cases.at(self._cases.each_option_once()[0])
 
     def _fly(self, mission: Mission, count: int, lanes: bool = False) -> RunTable:
+        """Runs of a mission whose drawn values fit one another: the first of the study that do, then others."""
+
         def note(stage: str, done: int, total: int) -> None:
             if stage == "compile":
                 self._progress(stage, done, total)
 
-        runs = np.arange(count) % max(len(self._seeds), 1)
-        seeds = self._seeds[runs] if count <= len(self._seeds) else self._seeds[0] + np.arange(count)
+        places = self._fitting(mission, count)
+        seeds = np.array([self._seed(place) for place in places])
+        runs = places % len(self._seeds)
+        chances = {key: values[runs] for key, values in self._chances.items()}
         how: dict[str, Any] = {"allow_code": self._allow_code, "threads": 1, "lanes": lanes or None, "progress": note}
-        try:
-            return fly_seeds(mission, seeds, chances={k: v[runs] for k, v in self._chances.items()}, **how)
-        except (
-            MissionError
-        ) as problem:  # of values drawn that do not fit one another: the first that do, again and again
-            run = self._first_that_fits(mission, problem)
-            chances = {key: np.full(count, values[run]) for key, values in self._chances.items()}
-            return fly_seeds(mission, np.full(count, self._seeds[run]), chances=chances, **how)
+        return fly_seeds(mission, seeds, chances=chances, **how)
 
-    def _first_that_fits(self, mission: Mission, problem: MissionError) -> int:
-        for run in range(min(len(self._seeds), MOST_TRIED)):
-            with suppress(MissionError):
-                draw(mission, int(self._seeds[run]), {key: float(values[run]) for key, values in self._chances.items()})
-                return run
-        raise problem
+    def _seed(self, place: int) -> int:
+        """Of a run of the study; beyond its last, the seeds go on."""
+        return int(self._seeds[0]) + int(place)
+
+    def _fitting(self, mission: Mission, count: int) -> np.ndarray:
+        """(count,) places of runs whose drawn values fit one another, those of few again and again.
+
+        Raises:
+            MissionError: none of the first MOST_TRIED can be drawn.
+        """
+        drawer, found = Drawer(mission), []
+        first: MissionError | None = None
+        for place in range(max(count, MOST_TRIED)):
+            chances = {key: float(values[place % len(values)]) for key, values in self._chances.items()}
+            try:
+                drawer.draw(self._seed(place), chances)
+                found.append(place)
+            except MissionError as problem:
+                first = first or problem
+            if len(found) == count:
+                return np.array(found)
+        if not found:
+            raise cast(MissionError, first)
+        return np.resize(found, count)
 
     def _glimpse(self, mission: Mission) -> RunTable:
         """All of a mission that cannot be so short."""
@@ -144,23 +155,14 @@ class Trial:
             return self._fly(mission, 1)
 
 
-def wants_lanes(cases: Cases, runs: int) -> bool:
-    """Whether a study is long enough for the engine's second form, eight missions in a register, to be compiled.
-
-    Args:
-        cases: of the study.
-        runs: of each.
-    """
-    return expected_steps(cases) * cases.size * runs >= LANES_FROM
-
-
 def check_that_something_varies(cases: Cases, runs: int, is_random: Callable[[], bool]) -> tuple[str, ...]:
     """What is worth knowing of what varies in a study.
 
     Args:
         cases: of the study.
         runs: of each.
-        is_random: tells whether the seed changes anything, at the price of two flights.
+        is_random: tells whether the seed changes anything; asked only where no value is drawn, as it costs two flights
+            of up to MOST_COMPARED cases.
 
     Raises:
         InputError: nothing does, so that all runs would be one.

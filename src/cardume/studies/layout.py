@@ -14,13 +14,24 @@ import numpy as np
 
 from cardume.errors import InputError
 from cardume.simulation.flight import METRICS
-from cardume.studies.cases import Axis, Cases, Drawn, Place
-from cardume.studies.run_table import FLEET, RunTable
+from cardume.studies.cases import Axis, Drawn, Place
+from cardume.studies.constants import (
+    DRAWN,
+    FAILED,
+    FLEET,
+    FLOWN,
+    MEANINGS,
+    NOT_FLOWN,
+    REFUSED,
+    REQUIREMENT,
+    RUN,
+    STATUS,
+    VEHICLE,
+)
+from cardume.studies.required import LIMITED, Wanted
+from cardume.studies.run_table import RunTable
 
-RUN, VEHICLE, REQUIREMENT = "run", "vehicle", "requirement"
-NOT_FLOWN, FLOWN, FAILED, REFUSED = 0, 1, 2, 3
-STATUS = {"not flown": NOT_FLOWN, "flown": FLOWN, "failed in flight": FAILED, "could not be flown": REFUSED}
-LAST = "status"  # is written after all others: where it says flown, they are there
+LAST = STATUS  # is written after all others: where it says flown, they are there
 
 SMALLEST_PORTION, LARGEST_PORTION = 16, 4096  # missions
 PORTION_WORK = 24_000_000  # steps of vehicles: one processor takes a second or a few
@@ -73,7 +84,7 @@ class Layout:
         axes: swept keys.
         seeds: (run,) whole numbers.
         vehicles: names, in the order of the mission.
-        requirements: as people read them.
+        requirements: what every run is judged by.
         variables: by name; the last is LAST.
         chunk: missions of a portion along each swept axis, then along the runs.
         chances: for samplings other than by chance, by key (run,) numbers in (0, 1).
@@ -83,7 +94,7 @@ class Layout:
     axes: tuple[Axis, ...]
     seeds: np.ndarray
     vehicles: tuple[str, ...]
-    requirements: tuple[str, ...]
+    requirements: tuple[Wanted, ...]
     variables: Mapping[str, Variable]
     chunk: Place
     chances: Mapping[str, np.ndarray] = field(default_factory=dict)
@@ -119,15 +130,19 @@ class Layout:
             yield Portion(place, starts, stops)
 
 
-def make_variables(drawn: Sequence[Drawn], tables: Sequence[RunTable]) -> dict[str, Variable]:
+def make_variables(drawn: Sequence[Drawn], tables: Sequence[RunTable], wanted: Sequence[Wanted]) -> dict[str, Variable]:
     """The variables of a study.
 
     Args:
         drawn: keys of its distributions.
-        tables: runs in which every metric and requirement appears that it can have.
+        tables: runs in which every metric appears that it can have; what is limited need not be in them.
+        wanted: what its runs are judged by.
     """
     found = [_drawn_variable(one) for one in drawn]
+    limited = {one.metric for one in wanted}
+    limited |= set(LIMITED) if any(one.is_drawn for one in wanted) else set()  # where one has a limit, all are watched
     names = {name for table in tables for name in table.metrics}
+    names |= {FLEET + name for name in limited} | {name for name in limited if not METRICS[name].of_fleet_only}
     found += [_metric(name) for name in (*(FLEET + name for name in METRICS), *METRICS) if name in names]
     one, each = (RUN,), (RUN, REQUIREMENT)
     nan = math.nan
@@ -153,21 +168,12 @@ def make_variables(drawn: Sequence[Drawn], tables: Sequence[RunTable]) -> dict[s
             {
                 "role": "status",
                 "long_name": "what became of the run",
-                "flag_values": list(STATUS.values()),
-                "flag_meanings": " ".join(word.replace(" ", "_") for word in STATUS),
+                "flag_values": list(range(len(MEANINGS))),
+                "flag_meanings": " ".join(words.replace(" ", "_") for words in MEANINGS),
             },
         ),
     ]
     return {variable.name: variable for variable in found}
-
-
-def make_requirements(tables: Sequence[RunTable]) -> tuple[str, ...]:
-    """What is required in any of the tables, each once; of limits that are drawn only the first.
-
-    Args:
-        tables: runs of the cases.
-    """
-    return tuple(dict.fromkeys(name for table in tables for name in table.requirements))
 
 
 def chunk_shape(shape: Place, steps: float) -> Place:
@@ -199,9 +205,9 @@ def block_of(layout: Layout, portion: Portion, tables: Sequence[RunTable]) -> di
         tables: whose rows are the runs of its first case, then of the next, and so on.
 
     Raises:
-        InputError: a run has a metric, or a requirement, that no run was known to have.
+        InputError: a run has a metric that no run was known to have.
     """
-    columns = [_columns(layout, table) for table in tables]
+    columns = [_columns(table) for table in tables]
     if unknown := {name for some in columns for name in some} - layout.variables.keys():
         raise InputError(f"some runs only have {', '.join(sorted(unknown))}, for which the study made no place")
     found = {}
@@ -214,7 +220,7 @@ def block_of(layout: Layout, portion: Portion, tables: Sequence[RunTable]) -> di
 
 def _drawn_variable(one: Drawn) -> Variable:
     attrs = {"role": "drawn", "key": one.key, "units": one.unit, "long_name": f"{one.key}, as drawn"}
-    name = f"drawn.{one.key}"
+    name = f"{DRAWN}{one.key}"
     return (
         Variable(name, (RUN,), "float64", math.nan, attrs)
         if one.is_number
@@ -230,40 +236,18 @@ def _metric(name: str) -> Variable:
     return Variable(name, (RUN,) if name != bare else (RUN, VEHICLE), "float64", math.nan, attrs)
 
 
-def _columns(layout: Layout, table: RunTable) -> dict[str, Any]:
+def _columns(table: RunTable) -> dict[str, Any]:
     """One case's runs by the names of the variables."""
-    failed = np.array([bool(why) for why in table.failure])
-    refused = failed & np.isnan(table.failed_at)
-    found: dict[str, Any] = {f"drawn.{key}": values for key, values in table.drawn.items()}
-    found |= table.metrics
-    found |= {
+    is_failed = np.isfinite(table.failed_at)
+    return {f"{DRAWN}{key}": values for key, values in table.drawn.items()} | {
+        **table.metrics,
+        "got": table.got,
+        "met": table.met,
+        "violated_at": table.violated_at,
         "failed_at": table.failed_at,
         "failure": np.array(table.failure, object),
-        LAST: np.where(refused, REFUSED, np.where(failed, FAILED, FLOWN)).astype(np.int8),
+        LAST: np.where(table.is_refused, REFUSED, np.where(is_failed, FAILED, FLOWN)).astype(np.int8),
     }
-    places = _requirement_places(layout.requirements, table.requirements)
-    for name in ("got", "met", "violated_at"):
-        values, variable = getattr(table, name), layout.variables[name]
-        spread = np.full((len(table), len(layout.requirements)), variable.fill, variable.type)
-        spread[:, places] = values
-        found[name] = spread
-    return found
-
-
-def _requirement_places(known: Sequence[str], names: Sequence[str]) -> list[int]:
-    """The places of requirements among all that a study knows; a limit that is drawn goes by its metric."""
-    bare = [_without_limit(name) for name in known]
-    found = []
-    for name in names:
-        alike = [k for k, text in enumerate(bare) if text == _without_limit(name)]
-        if name not in known and len(alike) != 1:
-            raise InputError(f"{name} is required of some runs only, which a study cannot hold; require it of all")
-        found.append(known.index(name) if name in known else alike[0])
-    return found
-
-
-def _without_limit(name: str) -> str:
-    return name.replace(" >= ", " <= ").partition(" <= ")[0]
 
 
 def _column(variable: Variable, values: Any, size: Place) -> np.ndarray:
@@ -274,23 +258,3 @@ def _column(variable: Variable, values: Any, size: Place) -> np.ndarray:
     if variable.type == "str":
         return np.array([str(value) for value in values], object)
     return np.asarray(values, kind).reshape(size)
-
-
-def expected_steps(cases: Cases) -> float:
-    """Steps of vehicles [-] in a typical mission of a study, for cutting it into portions.
-
-    Args:
-        cases: of the study.
-    """
-    mission = cases.mission
-    duration, step = (_typical(getattr(mission, name)) for name in ("duration", "plant_step"))
-    return duration / step * len(mission.vehicles)
-
-
-def _typical(value: Any) -> float:
-    """The middle [any] of what a value may be."""
-    if isinstance(value, (int, float)):
-        return float(value)
-    if options := getattr(value, "options", ()):
-        return float(sum(options) / len(options))
-    return float(value.mean if hasattr(value, "mean") else 0.5 * (value.low + value.high))

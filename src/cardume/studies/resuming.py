@@ -13,9 +13,10 @@ from cardume.missions.mission import Mission
 from cardume.studies.beginning import Begun, installed_version
 from cardume.studies.cases import cases_of
 from cardume.studies.distributing import stamp
+from cardume.studies.files import digests_of, named_files, refuse_changed, refuse_stale
 from cardume.studies.flying import Progress
 from cardume.studies.forecast import Trial
-from cardume.studies.layout import Layout, Portion
+from cardume.studies.layout import LAST, Layout, Portion
 from cardume.studies.ledger import Ledger, digest_of, read_ledger, write_ledger
 from cardume.studies.store import (
     STORE_NAME,
@@ -56,6 +57,7 @@ def resume_at(
     """
     attrs = read_attributes(directory)
     _refuse_another(directory, attrs, mission, runs, sampling)
+    _refuse_other_files(directory, attrs, mission, allow_code)
     text = attrs["mission"]
     cases = cases_of(parse_mission(text, catalog(allow_code), source=f"the mission of the study in {directory}"))
     ledger = stack.enter_context(Ledger(directory))
@@ -73,6 +75,8 @@ def resume_at(
     if not described:
         write_ledger(directory, now, {number: noted[number] for number in kept})
     left = {number: portion for number, portion in portions.items() if number not in kept}
+    for portion in left.values():  # damaged or not: until it is flown again, nobody may take it for flown
+        files_of(directory, layout, portion)[LAST].unlink(missing_ok=True)
     notes = _damage_words(noted, kept, described)
     seconds = 0.0
     if left:
@@ -112,6 +116,15 @@ def _refuse_another(
             f" {installed_version()}, {stamp()}), whose numbers may differ; continue it with that one, or"
             " begin a new study"
         )
+
+
+def _refuse_other_files(
+    directory: Path, attrs: Mapping[str, Any], mission: Mission, allow_code: tuple[str, ...]
+) -> None:
+    named = named_files(mission, allow_code)
+    advice = "bring back what it was, or begin a new study in another directory"
+    refuse_changed(attrs["files"], digests_of(named), f"the study in {printable(str(directory))}", advice)
+    refuse_stale(named)
 
 
 def _complete(

@@ -1,23 +1,21 @@
 """Many runs of one mission as columns: what was drawn, what came out, what was required."""
 
+import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cardume.missions.flying import failure_of
-from cardume.missions.mission import Mission, Requirement
-from cardume.missions.summary import all_required
+from cardume.missions.mission import Mission
 from cardume.missions.vehicle import LawChoice
-from cardume.onboard.mind import NEVER
-from cardume.simulation.flight import METRICS, Limit
+from cardume.simulation.flight import METRICS
 from cardume.simulation.fly import Flown
 from cardume.simulation.results import Measured, measure
-from cardume.units import show_quantity
-
-FLEET = "fleet_"
+from cardume.studies.constants import FLEET
+from cardume.studies.required import Wanted, judge_runs, wanted_of
 
 
 @dataclass(frozen=True)
@@ -50,6 +48,25 @@ class RunTable:
     def __len__(self) -> int:
         return len(self.seeds)
 
+    @property
+    def is_refused(self) -> np.ndarray:
+        """(n,) whether a run could not be flown."""
+        found: np.ndarray = np.array([bool(why) for why in self.failure], bool) & np.isnan(self.failed_at)
+        return found
+
+    @property
+    def all_met(self) -> np.ndarray:
+        """(n,) whether a run is all that is required."""
+        return np.asarray(self.met.all(axis=1))
+
+    @property
+    def is_varied(self) -> bool:
+        """Whether any run differs from the first in a number, in what was drawn, or in when it failed."""
+        columns = (*self.metrics.values(), *self.drawn.values(), self.failed_at)
+        return any(
+            not np.array_equal(c, np.broadcast_to(c[:1], c.shape), equal_nan=c.dtype.kind == "f") for c in columns
+        )
+
     def first(self, count: int) -> "RunTable":
         """The runs of the first seeds.
 
@@ -76,87 +93,89 @@ class Run(NamedTuple):
     flown: Flown
 
 
-def tabulate(mission: Mission, runs: Sequence[Run]) -> RunTable:
-    """Runs as a table.
+class Refused(NamedTuple):
+    """A run that could not be flown, as the values drawn for it do not fit one another; why, as people read it."""
+
+    seed: int
+    why: str
+
+
+def tabulate(mission: Mission, runs: Sequence[Run | Refused], wanted: Sequence[Wanted] | None = None) -> RunTable:
+    """Runs as a table; of those that could not be flown it says why.
 
     Args:
         mission: that was flown, with its distributions.
         runs: in order.
+        wanted: what they are judged by; None: what the mission requires.
     """
-    flown = [run.flown for run in runs]
+    wanted = wanted_of(mission) if wanted is None else wanted
     names = [vehicle.name for vehicle in mission.vehicles]
+    parts = [
+        _flown([run for run in some if isinstance(run, Run)], names, wanted)
+        if kind is Run
+        else _refused([run for run in some if isinstance(run, Refused)], wanted)
+        for kind, some in itertools.groupby(runs, type)
+    ]
+    return stack(parts) if parts else _flown([], names, wanted)
+
+
+def _flown(runs: Sequence[Run], names: Sequence[str], wanted: Sequence[Wanted]) -> RunTable:
+    flown = [run.flown for run in runs]
     measured = measure(flown) if runs else Measured({}, {}, {}, {})
     failed = np.array([one.trouble is not None for one in flown], bool)
     metrics = _metrics(measured)
     for values in metrics.values():
         values[failed] = np.nan
-    required = _required(mission, measured, names)
-    judged = [_judge(wanted, len(runs), metrics, measured, names) for wanted in required]
-    shape = len(runs), len(required)
+    judged = [judge_runs(one, len(runs), metrics, measured, names) for one in wanted]
+    shape = len(runs), len(wanted)
     got, met, violated_at = (np.array([j[k] for j in judged]).reshape(shape[::-1]).T for k in range(3))
     return RunTable(
         seeds=np.array([one.plan.seed for one in flown], np.int64),
         drawn=_drawn([run.drawn for run in runs]),
         metrics=metrics,
-        requirements=tuple(r.name for r in required),
+        requirements=tuple(one.name for one in wanted),
         got=got.astype(float),
-        met=met.astype(bool),
+        met=met.astype(bool) & ~failed[:, None],
         failed_at=np.array([one.trouble.time if one.trouble else math.nan for one in flown], float),
         failure=tuple(failure_of(one.trouble) if one.trouble else "" for one in flown),
         violated_at=np.where(failed[:, None], np.nan, violated_at.astype(float)),
     )
 
 
-def refused(mission: Mission, seed: int, why: str) -> RunTable:
-    """The row of a run that could not be flown, as the values drawn for it do not fit one another.
-
-    Args:
-        mission: that was to be flown.
-        seed: of the run.
-        why: as people read it.
-    """
-    empty = tabulate(mission, [])
-    shape = 1, len(empty.requirements)
-    nothing = np.full(shape, np.nan)
+def _refused(runs: Sequence[Refused], wanted: Sequence[Wanted]) -> RunTable:
+    nothing = np.full((len(runs), len(wanted)), np.nan)
     return RunTable(
-        np.array([seed]),
-        {},
-        {},
-        empty.requirements,
-        nothing,
-        np.zeros(shape, bool),
-        np.array([np.nan]),
-        (why,),
-        nothing,
+        seeds=np.array([run.seed for run in runs], np.int64),
+        drawn={},
+        metrics={},
+        requirements=tuple(one.name for one in wanted),
+        got=nothing,
+        met=np.zeros(nothing.shape, bool),
+        failed_at=np.full(len(runs), np.nan),
+        failure=tuple(run.why for run in runs),
+        violated_at=nothing,
     )
 
 
 def stack(tables: Sequence[RunTable]) -> RunTable:
-    """Tables of the same mission one after the other; what only some have is NaN, "" or false in the others.
+    """Tables of the same mission one after the other; what only some have is NaN or "" in the others.
 
     Args:
-        tables: at least one.
+        tables: at least one, with the same requirements.
     """
     if len(tables) == 1:
         return tables[0]
-    names = list(dict.fromkeys(name for table in tables for name in table.requirements))
-
-    def required(of: Callable[[RunTable], np.ndarray], none: Any) -> np.ndarray:
-        parts = [np.full((len(table), len(names)), none) for table in tables]
-        for part, table in zip(parts, tables, strict=True):
-            part[:, [names.index(name) for name in table.requirements]] = of(table)
-        return np.concatenate(parts)
-
+    sizes = [len(table) for table in tables]
     return RunTable(
         seeds=np.concatenate([table.seeds for table in tables]),
-        drawn=_joined([table.drawn for table in tables], [len(table) for table in tables]),
-        metrics=_joined([table.metrics for table in tables], [len(table) for table in tables]),
-        requirements=tuple(names),
-        got=required(lambda table: table.got, math.nan),
-        met=required(lambda table: table.met, False),
+        drawn=_joined([table.drawn for table in tables], sizes),
+        metrics=_joined([table.metrics for table in tables], sizes),
+        requirements=tables[0].requirements,
+        got=np.concatenate([table.got for table in tables]),
+        met=np.concatenate([table.met for table in tables]),
         failed_at=np.concatenate([table.failed_at for table in tables]),
         failure=tuple(why for table in tables for why in table.failure),
-        violated_at=required(lambda table: table.violated_at, math.nan),
+        violated_at=np.concatenate([table.violated_at for table in tables]),
     )
 
 
@@ -205,57 +224,3 @@ def _metrics(measured: Measured) -> dict[str, np.ndarray]:
     return {FLEET + name: np.array(measured.worst(name), float) for name in known} | {
         name: np.array(own[name], float) for name in known if name in own
     }
-
-
-class _Wanted(NamedTuple):
-    name: str
-    metric: str
-    vehicle: str | None
-    limit: np.ndarray | float  # in the metric's unit
-
-
-def _required(mission: Mission, measured: Measured, names: Sequence[str]) -> list[_Wanted]:
-    """What the mission requires, then the limits that vehicles have of their own; those that are drawn one by one."""
-    fixed, drawn = [], []
-    for metric, (limits, _) in measured.limits.items():
-        if (limits != limits[0]).any() and (limits == limits[:, :1]).all():  # one for all, drawn
-            drawn.append(_Wanted(f"{metric} {_sign(metric)} its limit", metric, None, limits[:, 0]))
-            continue
-        for k, name in enumerate(names if limits.shape[1] == len(names) else [None]):
-            if (limits[:, k] == limits[0, k]).all():
-                fixed += [Limit(metric, name, float(limits[0, k]))] if abs(limits[0, k]) < NEVER else []
-            elif name is not None:
-                drawn.append(_Wanted(f"{name}: {metric} {_sign(metric)} its limit", metric, name, limits[:, k]))
-    return [_wanted(r) for r in all_required(mission.require, fixed, len(names))] + drawn
-
-
-def _wanted(required: Requirement) -> _Wanted:
-    of = f"{required.vehicle}: " if required.vehicle else ""
-    limit = show_quantity(required.limit, METRICS[required.metric].unit, 12)
-    name = f"{of}{required.metric} {_sign(required.metric)} {limit}"
-    return _Wanted(name, required.metric, required.vehicle, required.limit)
-
-
-def _sign(metric: str) -> str:
-    return ">=" if METRICS[metric].wanted == "at least" else "<="
-
-
-def _judge(
-    wanted: _Wanted, count: int, metrics: Mapping[str, np.ndarray], measured: Measured, names: Sequence[str]
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of every run the value, whether it is what is wanted, and when that was first violated, if it is known."""
-    metric, k = wanted.metric, None if wanted.vehicle is None else names.index(wanted.vehicle)
-    none = np.full(count, np.nan)
-    if k is None:
-        got = metrics.get(FLEET + metric, none)
-    else:
-        got = metrics[metric][:, k] if metric in metrics else none
-    met = got >= wanted.limit if METRICS[metric].wanted == "at least" else got <= wanted.limit
-    when = np.full(len(got), np.inf)
-    if metric in measured.limits:
-        limits, first = measured.limits[metric]
-        concerned = range(limits.shape[1]) if k is None or limits.shape[1] == 1 else [k]
-        for j in concerned:
-            happened = (limits[:, j] == wanted.limit) & np.isfinite(first[:, j])
-            when = np.where(happened, np.minimum(when, first[:, j]), when)
-    return got, met, np.where(np.isfinite(when), when, np.nan)

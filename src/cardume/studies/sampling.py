@@ -7,8 +7,8 @@ from types import ModuleType
 import numpy as np
 
 from cardume.errors import InputError
+from cardume.studies.constants import SAMPLINGS
 
-SAMPLINGS = ("monte_carlo", "latin_hypercube", "sobol")
 SMALLEST = 2.0**-60
 LARGEST = 1.0 - 2.0**-53
 SOBOL_BITS = 52  # of a point; half a step more lies between 0 and 1 and is a float64

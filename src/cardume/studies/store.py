@@ -11,7 +11,7 @@ import math
 import os
 import shutil
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -21,8 +21,10 @@ import numpy as np
 from cardume.errors import DataError
 from cardume.studies.cases import Cases
 from cardume.studies.chunks import codecs, encoded, write_chunk
-from cardume.studies.layout import LAST, REQUIREMENT, RUN, VEHICLE, Layout, Portion, Variable
+from cardume.studies.constants import CHANCE, LIMIT, LIMIT_METRIC, LIMIT_VEHICLE, REQUIREMENT, RUN, VEHICLE
+from cardume.studies.layout import LAST, Layout, Portion, Variable
 from cardume.studies.ledger import digest_of, write_ledger
+from cardume.studies.required import Wanted, wanted_of
 from cardume.studies.sampling import needed
 from cardume.units import printable
 
@@ -33,9 +35,9 @@ FORMAT_VERSION = 1
 MARK = "cardume_study"
 STORE_NAME = "study.zarr"
 MISSION_NAME = "mission.yaml"
-CHANCE = "chance."
 BLOCK = 4096  # [bytes] that a file takes at least
 TEXT = 200  # [bytes] of a reason why a mission failed, mostly none
+OF_REQUIREMENTS = (LIMIT, LIMIT_METRIC, LIMIT_VEHICLE)
 SIZES = {"float64": 8, "bool": 1, "int8": 1, "str": 8}
 
 
@@ -97,7 +99,7 @@ def describing_files(directory: Path, layout: Layout) -> list[Path]:
     """
     store = directory / STORE_NAME
     names = [*(axis.key for axis in layout.axes), RUN, VEHICLE, *(CHANCE + key for key in layout.chances)]
-    names += [REQUIREMENT] if layout.requirements else []
+    names += [REQUIREMENT, *OF_REQUIREMENTS] if layout.requirements else []
     chunks = [store / name / "c" / "0" for name in names]
     return [store / "zarr.json", *(store / name / "zarr.json" for name in sorted(layout.variables)), *chunks]
 
@@ -117,7 +119,11 @@ def layout_of(directory: Path, cases: Cases) -> Layout:
     try:
         group = dict(zarr.open_group(directory / STORE_NAME, mode="r", use_consolidated=False).arrays())
         swept = len(cases.axes)
-        others = {RUN, VEHICLE, REQUIREMENT, *(axis.key for axis in cases.axes)}
+        wanted = wanted_of(cases.mission)
+        others = {RUN, VEHICLE, REQUIREMENT, *OF_REQUIREMENTS, *(axis.key for axis in cases.axes)}
+        told = tuple(map(str, group[REQUIREMENT][:])) if group[REQUIREMENT].size else ()
+        if told != tuple(one.name for one in wanted):
+            raise ValueError(f"its requirements are {', '.join(told)}")
         names = [name for name in group if name not in others and not name.startswith(CHANCE)]
         variables = {name: _variable(name, group[name], swept) for name in names}
         chances = {name.removeprefix(CHANCE): group[name][:] for name in group if name.startswith(CHANCE)}
@@ -125,7 +131,7 @@ def layout_of(directory: Path, cases: Cases) -> Layout:
             axes=cases.axes,
             seeds=group[RUN][:],
             vehicles=tuple(map(str, group[VEHICLE][:])),
-            requirements=tuple(map(str, group[REQUIREMENT][:])) if group[REQUIREMENT].size else (),
+            requirements=wanted,
             variables=variables,
             chunk=group[LAST].chunks,
             chances=chances,
@@ -251,18 +257,36 @@ def _create_arrays(store: Path, layout: Layout) -> None:
     """The arrays of a data set, coordinates filled, all else empty."""
     zarr = needed("zarr", "zarr")
     with _quiet():
-        group = zarr.open_group(store, mode="w", zarr_format=3, attributes={MARK: FORMAT_VERSION, **layout.attrs})
+        attrs = {MARK: FORMAT_VERSION, **layout.attrs, "coordinates": " ".join(OF_REQUIREMENTS)}
+        group = zarr.open_group(store, mode="w", zarr_format=3, attributes=attrs)
         for axis in layout.axes:
             _fill(group, axis.key, axis.values, {"units": axis.unit, "long_name": axis.key, "role": "swept"})
         _fill(group, RUN, layout.seeds, {"long_name": "seed"})
         _fill(group, VEHICLE, np.array(layout.vehicles), {"long_name": "vehicle"})
-        _fill(group, REQUIREMENT, np.array(layout.requirements, dtype="U"), {"long_name": "what is required"})
+        _fill_requirements(group, layout.requirements)
         for key, values in layout.chances.items():
             about = {"role": "chance", "key": key, "long_name": f"chance below which the value of {key} lies"}
             _fill(group, CHANCE + key, values, about, (RUN,))
         for variable in layout.variables.values():
             _create(zarr, group, layout, variable)
         zarr.consolidate_metadata(store)
+
+
+def _fill_requirements(group: Any, wanted: Sequence[Wanted]) -> None:
+    """What is required, for people, and beside it the same for programs."""
+    columns = [
+        (REQUIREMENT, [one.name for one in wanted], "U", "what is required"),
+        (
+            LIMIT,
+            [one.limit for one in wanted],
+            "f8",
+            "limit, in the unit of its metric; NaN where each run has its own",
+        ),
+        (LIMIT_METRIC, [one.metric for one in wanted], "U", "metric that is limited"),
+        (LIMIT_VEHICLE, [one.vehicle or "" for one in wanted], "U", "whose metric; empty: the fleet's"),
+    ]
+    for name, values, kind, meaning in columns:
+        _fill(group, name, np.array(values, dtype=kind), {"long_name": meaning}, (REQUIREMENT,))
 
 
 def _is_alive(process: int) -> bool:

@@ -10,6 +10,7 @@ import numpy as np
 from cardume.missions.atomic import write_file
 from cardume.missions.summary import to_json
 from cardume.studies.answers.distributions import means_of
+from cardume.studies.constants import FAILED, FLEET, FLOWN, REFUSED
 from cardume.studies.statistics import Estimate, share_interval
 
 if TYPE_CHECKING:
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
 FORMAT_VERSION = 1
 FILE_NAME = "summary.json"
-FLEET = "fleet_"
 
 
 def summarize_study(runs: "xarray.Dataset") -> dict[str, Any]:
@@ -48,9 +48,12 @@ def summarize_study(runs: "xarray.Dataset") -> dict[str, Any]:
             {
                 "label": ", ".join(f"{key} {_shown(value)}" for key, value in zip(swept, place, strict=True)),
                 "options": dict(zip(swept, place, strict=True)),
-                "flown": int((status[k] == 1).sum()),
-                "failed": int((status[k] > 1).sum()),
-                "requirements": {name: _share(met[k, status[k] > 0, r]) for r, name in enumerate(required)},
+                "flown": int((status[k] == FLOWN).sum()),
+                "failed": int((status[k] == FAILED).sum()),
+                "refused": int((status[k] == REFUSED).sum()),
+                "requirements": {
+                    name: _share(met[k, np.isin(status[k], (FLOWN, FAILED)), r]) for r, name in enumerate(required)
+                },
                 "metrics": {name: _metric(of[k]) for name, of in means.items() if math.isfinite(of[k].mean)},
             }
             for k, place in enumerate(itertools.product(*options))

@@ -14,8 +14,9 @@ from cardume.studies.answers.differences import Differences, differences, swept_
 from cardume.studies.answers.influences import Influences
 from cardume.studies.answers.regions import WANTED, chance_maps, fewest_runs, numeric_keys, verdicts
 from cardume.studies.answers.requirements import chance_of_all, chances_of_all, requirements
-from cardume.studies.answers.results import FAILED, NOT_FLOWN, REFUSED, Results
+from cardume.studies.answers.results import Results
 from cardume.studies.answers.worst import worst_runs
+from cardume.studies.constants import FAILED, REFUSED
 from cardume.studies.statistics import is_clear
 from cardume.units import show_quantity
 
@@ -30,7 +31,7 @@ def study_words(study: Any) -> list[str]:
         study: `Results`, or its dataset.
     """
     results = as_results(study)
-    if results.num_flown == 0:
+    if results.num_left == results.status.size:
         return ["Nothing was flown yet."]
     return [sentence for sentence in _sentences(results) if sentence]
 
@@ -54,12 +55,12 @@ def _sentences(results: Results) -> Iterator[str]:
 
 
 def _flown(results: Results) -> str:
-    runs = int(np.sum((results.status != NOT_FLOWN).any(axis=tuple(range(len(results.swept))))))
+    runs = int(np.sum(results.is_judged.any(axis=tuple(range(len(results.swept))))))
     of = f" of {results.status.size}" if results.num_flown < results.status.size else ""
     seeds = "the same seeds for all" if results.num_cases > 1 else f"seeds {results.seeds[0]} to {results.seeds[-1]}"
     cases = f"{results.num_cases} cases with {_runs(runs)} each" if results.num_cases > 1 else _runs(runs)
     whole = f"{results.num_flown}{of} missions were flown: {cases}, {seeds}."
-    return f"{whole} What is missing is flown with --resume." if of else whole
+    return f"{whole} What is missing is flown with --resume." if results.num_left else whole
 
 
 def _failed(results: Results) -> str:

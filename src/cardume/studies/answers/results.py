@@ -1,6 +1,5 @@
 """The dataset of a study as arrays with the cases first and the runs last."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,34 +9,35 @@ import numpy as np
 
 from cardume.errors import DataError
 from cardume.simulation.flight import METRICS
-from cardume.units import SHOWN_IN, show_quantity
-
-NOT_FLOWN, FLOWN, FAILED, REFUSED = range(4)  # the values of `status`
-FIXED = ("run", "vehicle", "requirement")
-DRAWN, CHANCE = "drawn.", "chance."
-FLEET = "fleet_"
-TRIFLE = 1e-9  # of any metric, in its unit
-MOST_SHOWN = 8  # metrics
-
-# What is shown after the metrics that are required: those of these that have numbers.
-USUAL = (
-    "cross_track_rms",
-    "settling_time",
-    "position_error_rms",
-    "coordination_error_rms",
-    "formation_error_rms",
-    "yaw_effort",
-    "energy",
+from cardume.studies.constants import (
+    CHANCE,
+    DRAWN,
+    FAILED,
+    FLEET,
+    FLOWN,
+    LIMIT,
+    LIMIT_METRIC,
+    LIMIT_VEHICLE,
+    NOT_FLOWN,
+    REQUIREMENT,
+    RUN,
+    TRIFLE,
+    USUAL,
+    VEHICLE,
 )
+from cardume.units import SHOWN_IN, printable, show_quantity
+
+FIXED = (RUN, VEHICLE, REQUIREMENT)
+MOST_SHOWN = 8  # metrics
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A requirement, as its readable name says it.
+    """A requirement, for programs.
 
     Attributes:
-        metric: its name; empty where the text is not understood.
-        bound: [any] in the metric's unit; NaN where the text is not understood.
+        metric: its name.
+        bound: [any] in the metric's unit; NaN where each run has its own.
         sign: 1.0 where more is worse, -1.0 where less is.
         vehicle: whose metric; empty: the fleet's.
     """
@@ -92,8 +92,13 @@ class Results:
 
     @property
     def num_flown(self) -> int:
-        """How many missions were tried, those included that failed."""
-        return int(np.sum(self.status != NOT_FLOWN))
+        """How many missions were flown, those included that failed in flight."""
+        return int(np.sum(self.is_judged))
+
+    @property
+    def num_left(self) -> int:
+        """How many missions are still to be flown."""
+        return int(np.sum(self.status == NOT_FLOWN))
 
     @property
     def num_cases(self) -> int:
@@ -195,8 +200,17 @@ class Results:
 
     @cached_property
     def limits(self) -> tuple[Limit, ...]:
-        """What each requirement's name says."""
-        return tuple(read_limit(text) for text in self.requirements)
+        """What each of them limits.
+
+        Raises:
+            DataError: the data set does not say it, or names a metric that does not exist.
+        """
+        if not self.requirements:
+            return ()
+        if lacking := [name for name in (LIMIT, LIMIT_METRIC, LIMIT_VEHICLE) if name not in self.dataset.variables]:
+            raise DataError(f"this data set of a study lacks {', '.join(lacking)}; fly it again with this cardume")
+        columns = [self.dataset[name].values.tolist() for name in (LIMIT_METRIC, LIMIT, LIMIT_VEHICLE)]
+        return tuple(_limit(str(m), float(bound), str(v)) for m, bound, v in zip(*columns, strict=True))
 
     @cached_property
     def met(self) -> np.ndarray:
@@ -212,8 +226,8 @@ class Results:
 
     @cached_property
     def is_judged(self) -> np.ndarray:
-        """(swept ..., run) whether a run has a verdict: it was flown, well or not."""
-        found: np.ndarray = self.status != NOT_FLOWN
+        """(swept ..., run) whether a run has a verdict: it was flown, well or not, and neither left nor refused."""
+        found: np.ndarray = (self.status == FLOWN) | (self.status == FAILED)
         return found
 
     @cached_property
@@ -233,26 +247,10 @@ class Results:
         return self.array("violated_at", "requirement").astype(float)
 
 
-LIMIT = re.compile(
-    r"^(?:(?P<vehicle>.+?)[:.] ?)?(?P<metric>[a-z]\w*) (?P<bound><=|>=|at most|at least|≤|≥) (?P<value>\S+)"
-)
-
-
-def read_limit(text: str) -> Limit:
-    """What a requirement's readable name says, as `cross_track_rms <= 0.5 m` or `port: energy <= 900 J`.
-
-    Args:
-        text: of the requirement.
-    """
-    found = LIMIT.match(text)
-    if found is None:
-        return Limit("", np.nan, 1.0)
-    try:
-        bound = float(found["value"])
-    except ValueError:
-        bound = np.nan
-    sign = 1.0 if found["bound"] in ("<=", "at most", "≤") else -1.0
-    return Limit(found["metric"], bound, sign, found["vehicle"] or "")
+def _limit(metric: str, bound: float, vehicle: str) -> Limit:
+    if metric not in METRICS:
+        raise DataError(f"this data set of a study requires {printable(metric)}, and there is no metric of that name")
+    return Limit(metric, bound, -1.0 if METRICS[metric].wanted == "at least" else 1.0, vehicle)
 
 
 def shown_in(unit: str) -> tuple[float, str]:

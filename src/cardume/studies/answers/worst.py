@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cardume.studies.answers.results import FAILED, FLOWN, Results
+from cardume.studies.answers.results import Results
+from cardume.studies.constants import FAILED, FLOWN
 
 NUMBER = 5
 

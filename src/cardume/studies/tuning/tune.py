@@ -14,7 +14,7 @@ from cardume.missions.mission import Mission
 from cardume.simulation.flight import METRICS
 from cardume.studies.arms import Arm, Given, check_metrics, open_given
 from cardume.studies.comparing import values_of
-from cardume.studies.flying import LANES_FROM, Progress, RunTable, fly_seeds
+from cardume.studies.flying import Progress, RunTable, fly_seeds
 from cardume.studies.statistics import Estimate, is_clear, paired_difference
 from cardume.studies.tuning.knobs import Knob, make_knobs, with_values
 from cardume.studies.tuning.searching import (
@@ -27,6 +27,7 @@ from cardume.studies.tuning.searching import (
     search_one,
     search_several,
 )
+from cardume.studies.work import expected_ticks, wants_lanes
 
 DEFAULT_RUNS, DEFAULT_TRIES = 24, 60
 FEWEST_TRIES, MOST_TRIES, MOST_RUNS, MOST_METRICS = 10, 10_000, 10_000, 3
@@ -199,8 +200,7 @@ class _Search:
         self._known: dict[tuple[float, ...], Try] = {}
         self.tries: list[Try] = []
         self.is_random = True
-        steps = _typical_ticks(mission) * len(mission.vehicles) * runs * most
-        self._lanes = steps >= LANES_FROM or None
+        self._lanes = wants_lanes(expected_ticks(mission) * runs * most) or None
 
     def begin(self) -> None:
         """Try the mission as it is, and see whether its runs differ at all."""
@@ -325,9 +325,3 @@ def _differs(column: np.ndarray) -> bool:
     """Whether a run has another value than the first."""
     others = np.broadcast_to(column[:1], column.shape)
     return not np.array_equal(column, others, equal_nan=column.dtype.kind == "f")
-
-
-def _typical_ticks(mission: Mission) -> float:
-    ends = [getattr(value, "high", value) for value in (mission.duration, mission.tick)]
-    duration, tick = (float(e) if isinstance(e, (int, float)) else float("nan") for e in ends)
-    return duration / tick if math.isfinite(duration / tick) else 1000.0
