@@ -7,7 +7,18 @@ import pytest
 from scipy import stats
 
 from cardume.errors import DataError
+from cardume.studies.answers.differences import differences, swept_laws
 from cardume.studies.answers.distributions import MOST_RESAMPLED, distribution, mean_of, means_of, quantile
+from cardume.studies.answers.regions import (
+    boundary,
+    chance_curves,
+    chance_maps,
+    curves,
+    fewest_runs,
+    mean_maps,
+    numeric_keys,
+    verdicts,
+)
 from cardume.studies.answers.requirements import chance, chance_of_all, requirements
 from cardume.studies.answers.results import Limit, Results
 from cardume.studies.answers.worst import worst_runs
@@ -122,6 +133,92 @@ def test_limits_are_read_from_what_stands_beside_their_names() -> None:
         _ = Results(dataset.drop_vars("limit")).limits
     with pytest.raises(DataError, match="requires roll_max, and there is no metric"):
         _ = Results(dataset.assign_coords(limit_metric=("requirement", ["roll_max"] * 3))).limits
+
+
+# ---- regions ---------------------------------------------------------------------------------------------------------
+
+
+def plane(runs: int = 400) -> Results:
+    """A metric that is N(x + 2 y, 1) over two keys, the second given first and downwards."""
+    y, x = np.array([0.3, 0.2, 0.1, 0.0]), np.array([0.0, 1.0, 2.0])
+    values = 10.0 + x[None, :, None] + 2.0 * y[:, None, None] + rng(4).normal(size=(4, 3, runs))
+    swept = {"current.speed": (y, "m/s"), "acoustics.delay": (x, "s")}
+    return Results(make_dataset({"cross_track_rms": values}, swept, required=["cross_track_rms <= 12 m"]))
+
+
+def test_maps_lie_as_their_keys_say() -> None:
+    results = plane()
+    (found,) = mean_maps(results, ("acoustics.delay", "current.speed"), "cross_track_rms")
+    np.testing.assert_array_equal(found.x, [0.0, 1.0, 2.0])
+    np.testing.assert_array_equal(found.y, [0.0, 0.1, 0.2, 0.3])
+    truth = 10.0 + found.x[None, :] + 2.0 * found.y[:, None]
+    assert np.all((found.low < truth + 0.1) & (found.high > truth - 0.1))
+    np.testing.assert_allclose(found.middle, truth, atol=0.2)
+    (turned,) = mean_maps(results, ("current.speed", "acoustics.delay"), "cross_track_rms")
+    np.testing.assert_array_equal(turned.middle, found.middle.T)
+    sample = results.values("cross_track_rms")[3, 2]
+    judge = stats.t.interval(0.95, 399, sample.mean(), stats.sem(sample))
+    np.testing.assert_allclose([found.low[0, 2], found.high[0, 2]], judge)
+
+
+def test_boundary_is_where_the_probability_crosses() -> None:
+    """P(N(x, 1) <= 12 - 10) = 0.5 where x = 2, on a grid so fine that the logit is straight between its points."""
+    x, y = np.linspace(0.0, 3.0, 13), np.array([0.0, 1.0])
+    values = np.broadcast_to(10.0 + x[None, :, None], (2, 13, 3000)) + rng(5).normal(size=(1, 1, 3000))
+    swept = {"current.speed": (y, "m/s"), "acoustics.delay": (x, "s")}
+    results = Results(make_dataset({"cross_track_rms": values}, swept, required=["cross_track_rms <= 12 m"]))
+    (chances,) = chance_maps(results, ("acoustics.delay", "current.speed"))
+    for wanted in (0.5, 0.95):
+        truth = 2.0 - stats.norm.ppf(wanted)
+        lines = boundary(chances, wanted)
+        low, middle, high = (lines[name][0][:, 0].mean() for name in ("low", "middle", "high"))
+        assert low < middle < high
+        assert low - 0.02 <= truth <= high + 0.02
+        assert middle == pytest.approx(truth, abs=0.08)
+
+
+def test_what_is_sure_and_what_is_not() -> None:
+    (chances,) = chance_maps(plane(), ("acoustics.delay", "current.speed"))
+    sure = verdicts(chances, 0.9)
+    np.testing.assert_array_equal(sure[0], [1, -1, -1])  # P(N(0, 1) <= 2) = .977, P(N(1, 1) <= 2) = .84, .5
+    enough, few = fewest_runs(), fewest_runs() - 1
+    assert stats.binomtest(enough, enough).proportion_ci(method="wilson").low >= 0.95
+    assert stats.binomtest(few, few).proportion_ci(method="wilson").low < 0.95
+
+
+def test_curves_of_one_key_with_another_as_label() -> None:
+    x = np.array([2.0, 0.0, 1.0])
+    noise = rng(6).normal(size=(2, 1, 100))
+    values = np.array([[[1.0], [3.0]]]).reshape(2, 1, 1) * x[None, :, None] + noise
+    swept = {"guidance": (["arcsine", "line_of_sight"], ""), "acoustics.delay": (x, "s")}
+    results = Results(make_dataset({"cross_track_rms": values}, swept, required=["cross_track_rms <= 2 m"]))
+    assert numeric_keys(results) == ("acoustics.delay",)
+    assert swept_laws(results) == ("guidance",)
+    first, second = curves(results, "acoustics.delay", "cross_track_rms")
+    assert (first.label, second.label) == ("guidance arcsine", "guidance line_of_sight")
+    np.testing.assert_array_equal(first.at, [0.0, 1.0, 2.0])
+    np.testing.assert_allclose([mean.mean for mean in second.means], [0.0, 3.0, 6.0], atol=0.3)
+    assert np.all(first.low < first.high)
+    chances = chance_curves(results, "acoustics.delay")
+    assert [mean.size for mean in chances[0].means] == [100, 100, 100]
+    assert chances[1].means[2].mean < 0.01 < 0.9 < chances[0].means[0].mean
+
+
+# ---- differences -----------------------------------------------------------------------------------------------------
+
+
+def test_laws_are_compared_in_pairs() -> None:
+    weather = rng(7).normal(10.0, 3.0, size=(1, 4, 60))
+    shift = np.array([0.0, 0.3, 0.0])[:, None, None]
+    values = weather + shift + rng(8).normal(0.0, 0.2, size=(3, 4, 60))
+    swept = {"guidance": (["a", "b", "c"], ""), "acoustics.delay": ([0.0, 1.0, 2.0, 3.0], "s")}
+    found = differences(Results(make_dataset({"cross_track_rms": values}, swept)), "guidance")
+    assert found.is_real["cross_track_rms"] == (True, False)
+    assert found.differences["cross_track_rms"][0].mean == pytest.approx(0.3, abs=0.06)
+    assert found.differences["cross_track_rms"][0].size == 60  # one pair per seed, not per mission
+    assert found.is_pooled
+    same = differences(Results(make_dataset({"cross_track_rms": weather + 0.0 * shift}, swept)), "guidance")
+    assert same.differences["cross_track_rms"][0][:3] == (0.0, 0.0, 0.0)
 
 
 # ---- worst runs ------------------------------------------------------------------------------------------------------
