@@ -55,6 +55,18 @@ MISSIONS = {
         "vehicles.alone.altitude=3",
         "vehicles.alone.start.depth=1",
     ),
+    "faults": (
+        SMALLEST,
+        "coordination={silence: {after: 9, do: slow_down}}",
+        "faults=["
+        "{kind: modem_silent, vehicle: alone, from: 3, to: 9}, {kind: gnss_lost, vehicle: alone, from: 3, lasts: 9},"
+        "{kind: usbl_outlier, vehicle: alone, from: 3}, {kind: sensor_frozen, vehicle: alone, from: 3, sensor: ahrs},"
+        "{kind: sensor_biased, vehicle: alone, from: 3, sensor: ahrs, heading: 0.1},"
+        "{kind: sensor_nan, vehicle: alone, from: 3, sensor: ahrs}, {kind: thruster_weak, vehicle: alone, from: 3},"
+        "{kind: vehicle_lost, vehicle: alone, from: 3}, {kind: clock_offset, vehicle: alone, from: 3, offset: 2},"
+        "{kind: clock_drift, vehicle: alone, from: 3, drift: 0.01}, {kind: current_step, from: 3, speed: 0.1},"
+        "{kind: forged_packets, vehicle: alone, from: 3}, {kind: replayed_packets, vehicle: alone, from: 3}]",
+    ),
 }
 REPEATED = {
     "line": ("path",),
@@ -62,6 +74,7 @@ REPEATED = {
     "segments": ("path", "guidance"),
     "arc": ("path", "current"),
     "file": ("path",),
+    "faults": ("faults", "coordination"),
     "orders": ("phases", "limits", "abort", "bathymetry"),
     "clothoids": ("path",),
     "waypoints": ("path",),

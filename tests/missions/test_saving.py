@@ -34,7 +34,7 @@ def test_a_saved_mission_reads_back_equal(tree: dict[str, Any]) -> None:
 
 def test_a_saved_mission_writes_every_default() -> None:
     saved = parse(SMALLEST).to_yaml()
-    optional = ("origin", "swath", "require", "initial_estimate")
+    optional = ("origin", "swath", "faults", "require", "initial_estimate")
     for field in (*fields_of(Mission), *SHARED.values()):
         assert re.search(rf"^ *(- )?{field.key}:", saved, re.MULTILINE) or field.key in optional, field.key
     for text in ("cardume: 1", "plant_step: 0.05 s", "lookahead: 5 m", "heading_gain: 2 N m", "course: 30 deg"):

@@ -20,6 +20,7 @@ from cardume.missions.schema import (
     Kind,
     Laws,
     ListOf,
+    Member,
     Name,
     Profiled,
     Quantity,
@@ -174,6 +175,11 @@ def _law(draw: st.DrawFn, kind: Laws, vary: bool) -> dict[str, Any]:
 
 
 @_written.register
+def _member(_kind: Member, _vary: bool) -> st.SearchStrategy[Any]:
+    return st.just(NAMES[0])
+
+
+@_written.register
 def _group(kind: Group, vary: bool) -> st.SearchStrategy[Any]:
     laws = inlined_laws(kind)
     section = _fields(list(fields_of(kind.record)), vary)
@@ -183,7 +189,7 @@ def _group(kind: Group, vary: bool) -> st.SearchStrategy[Any]:
 @_written.register
 def _variant(kind: Variant, vary: bool) -> st.SearchStrategy[Any]:
     forms = [
-        _fields(list(fields_of(record)), vary).map(lambda section, name=name: {"type": name, **section})
+        _fields(list(fields_of(record)), vary).map(lambda section, name=name: {kind.selector: name, **section})
         for name, record in kind.records.items()
     ]
     return st.one_of(forms)

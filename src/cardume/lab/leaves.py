@@ -71,7 +71,7 @@ class Walk:
                 continue
             is_inlined = isinstance(field.kind, Laws) and field.kind.inlined
             own = key if is_inlined else join(key, field.key)
-            inner, now = getattr(value, field.key, None), getattr(drawn, field.key)
+            inner, now = getattr(value, field.attribute, None), getattr(drawn, field.attribute)
             yield from self.field(field.kind, own, inner, now, field.doc)
 
     def field(self, kind: Kind, key: str, value: Any, drawn: Any, meaning: str) -> Iterator[Leaf]:
@@ -105,7 +105,7 @@ class Walk:
                     item.limit,
                     f"{item.metric.replace('_', ' ')}{f' of {item.vehicle}' if item.vehicle else ''}, required",
                 )
-        elif isinstance(kind, ListOf) and len(drawn) <= MOST_ITEMS and not isinstance(drawn[0], Point):
+        elif isinstance(kind, ListOf) and 0 < len(drawn) <= MOST_ITEMS and not isinstance(drawn[0], Point):
             written = value if isinstance(value, tuple) else drawn
             for index, (one, now) in enumerate(zip(written, drawn, strict=False)):
                 yield from self.field(kind.item, join(key, str(index)), one, now, meaning)

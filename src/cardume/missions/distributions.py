@@ -77,7 +77,7 @@ def parts_of(value: Any, key: str = "") -> list[tuple[Any, Any, str]]:
     if isinstance(value, tuple):
         return [(index, item, join(key, _item_key(item, index))) for index, item in enumerate(value)]
     return [
-        (field.key, getattr(value, field.key), _field_key(key, field))
+        (field.attribute, getattr(value, field.attribute), _field_key(key, field))
         for field in (fields_of(type(value)) if is_dataclass(value) else ())
     ]
 
@@ -108,7 +108,7 @@ def units_of_varying(value: Any, key: str = "", unit: str = "") -> Iterator[tupl
         items = [(join(key, _item_key(item, index)), item, unit) for index, item in enumerate(value)]
     else:
         items = [
-            (_field_key(key, field), getattr(value, field.key), getattr(field.kind, "unit", ""))
+            (_field_key(key, field), getattr(value, field.attribute), getattr(field.kind, "unit", ""))
             for field in (fields_of(type(value)) if is_dataclass(value) else ())
         ]
     for inner, item, of in items:

@@ -24,6 +24,8 @@ ERRORS = ("sigma", "bias", "deviation", "misalignment", "latency")  # parts of t
 UNLIMITED = 1e9  # [m]
 FARTHEST = ("deepest", "range")  # names of parameters that are limits
 TRIM_STEP = 0.05  # [s]
+HOLDING = ("ahrs", "depth", "dvl", "thruster_speed", "altimeter")  # sensors whose last reading stands until the next
+LEAST_PATIENCE = 5.0  # [s] for which a reading may stay the same
 
 
 def choice_of(chosen: LawChoice, catalog: Catalog) -> Choice:
@@ -121,6 +123,11 @@ def _datasheet(laws: dict[str, Choice]) -> Datasheet:
         told("usbl", "angle_sigma"),
         told("ahrs", "heading_sigma") if of_ahrs else 0.0,
         told("ahrs", "attitude_sigma") if of_ahrs else 0.0,
+        told("depth", "sigma"),
+        told("altimeter", "sigma"),
+        told("dvl", "sigma"),
+        told("thruster_speed", "sigma"),
+        max(LEAST_PATIENCE, *(5.0 * laws[kind].value("period") for kind in HOLDING if kind in laws), 0.0),
     )
 
 

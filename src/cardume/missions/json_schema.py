@@ -21,6 +21,7 @@ from cardume.missions.schema import (
     Kind,
     Laws,
     ListOf,
+    Member,
     Name,
     Profiled,
     Quantity,
@@ -148,6 +149,11 @@ def _name(_kind: Name, _catalog: Catalog) -> dict[str, Any]:
 
 
 @_plain.register
+def _member(_kind: Member, _catalog: Catalog) -> dict[str, Any]:
+    return _name(Name(), _catalog)
+
+
+@_plain.register
 def _graph(kind: Graph, _catalog: Catalog) -> dict[str, Any]:
     row = {"type": "array", "items": {"type": "number", "minimum": kind.weights.low}}
     return {"anyOf": [{"enum": list(kind.names)}, {"type": "array", "items": row}]}
@@ -178,7 +184,7 @@ def _group(kind: Group, catalog: Catalog) -> dict[str, Any]:
 def _variant(kind: Variant, catalog: Catalog) -> dict[str, Any]:
     forms = []
     for name, record in kind.records.items():
-        named = Field("type", Word((name,), fixed=True), MISSING, None, False, "which form")
+        named = Field(kind.selector, Word((name,), fixed=True), MISSING, None, False, "which form")
         forms.append(_section([named, *fields_of(record)], catalog))
     return {"anyOf": forms}
 

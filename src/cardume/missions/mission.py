@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cardume.errors import MissionError, Position, Problem
+from cardume.missions.faults import FAULTS, AnyFault
 from cardume.missions.route import PATHS, AnyPath
 from cardume.missions.schema import (
     NOT_NEGATIVE,
@@ -117,6 +118,9 @@ class Mission:
     swath: Annotated[float | None, Quantity("m", POSITIVE), "width that a vehicle's sonar covers"] = None
     require: Annotated[
         tuple[Requirement, ...], Requirements(Requirement, fixed=True), "limits that make the verdict"
+    ] = ()
+    faults: Annotated[
+        tuple[AnyFault, ...], ListOf(Variant(FAULTS, selector="kind"), fixed=True), "what goes wrong, and when"
     ] = ()
     positions: Mapping[str, Position] = field(default_factory=dict, compare=False, repr=False)
 

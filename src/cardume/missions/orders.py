@@ -76,6 +76,9 @@ def _orders(vehicle: Vehicle) -> Orders:
         if isinstance(fence := limits.geofence, RoundFence):
             told |= {"fence_radius": fence.radius}
             told |= {"fence_north": fence.centre.north, "fence_east": fence.centre.east}
+    if silence := vehicle.coordination.silence:
+        shares = {"go_on": 1.0, "slow_down": silence.share, "hold": 0.0}
+        told |= {"silent_after": silence.after, "silent_share": shares[silence.do]}
     return Orders(**told)
 
 

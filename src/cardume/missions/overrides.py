@@ -77,8 +77,9 @@ def merge(kind: Kind | None, base: Node, over: Node, context: Context) -> Node:
     entries, changes = as_entries(kind, base), as_entries(kind, over)
     for laws in inlined_laws(kind):
         _drop_replaced_law(laws, entries, changes, base, context)
-    if isinstance(kind, Variant) and "type" in changes and _value(entries, "type") != _value(changes, "type"):
-        entries = {}
+    if isinstance(kind, Variant):
+        named = kind.selector
+        entries = {} if named in changes and _value(entries, named) != _value(changes, named) else entries
     for key, node in changes.items():
         entries[key] = merge(_kind_at(kind, key), entries[key], node, context) if key in entries else node
     return Node(entries, base.position if isinstance(over.value, Partial) else over.position)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from cardume.laws import laws_of
 from cardume.missions.catalog import Catalog
 from cardume.missions.currents import Window, explain_coverage, read_current
 from cardume.missions.equipping import choice_of, plan_vehicle
+from cardume.missions.fault_planning import plan_faults
 from cardume.missions.formats import read_plan
 from cardume.missions.geodesy import GeoPoint
 from cardume.missions.laying import lay_path
@@ -81,9 +82,12 @@ def make_plan(mission: Mission, catalog: Catalog, memo: Memo = NO_MEMO) -> Plann
     seabed = memo.recall(
         "seabed", (mission.bathymetry, mission.origin, *paths), lambda: _seabed(mission, origin, paths)
     )
-    vehicles = tuple(planned(vehicle, path) for vehicle, path in zip(mission.vehicles, paths, strict=True))
+    vehicles = scheduled(mission, [planned(v, path) for v, path in zip(mission.vehicles, paths, strict=True)])
+    faults = plan_faults(mission, vehicles)
+    if faults:
+        vehicles = tuple(replace(vehicle, screens=True) for vehicle in vehicles)
     plan = Plan(
-        scheduled(mission, vehicles),
+        vehicles,
         memo.recall("hears", (mission.vehicles[0].coordination,), lambda: np.asarray(mission.adjacency)),
         mission.duration,
         mission.seed,
@@ -95,6 +99,7 @@ def make_plan(mission: Mission, catalog: Catalog, memo: Memo = NO_MEMO) -> Plann
         seabed,
         separation_of(mission),
         is_watched(mission),
+        faults,
     )
     return Planned(plan, own)
 

@@ -115,21 +115,25 @@ def _group(kind: Group, node: Node, context: Context) -> Any:
 @_read.register
 def _variant(kind: Variant, node: Node, context: Context) -> Any:
     entries = as_entries(kind, node)
-    named = entries.pop("type", None)
+    selector = kind.selector
+    named = entries.pop(selector, None)
     if named is None:
         collector = Collector()
-        collector.add(missing(node, "type", f"must be one of {', '.join(kind.records)}"))
-        anywhere = {"type"}.union(*(keys_of(record) for record in kind.records.values()))
+        collector.add(missing(node, selector, f"must be one of {', '.join(kind.records)}"))
+        anywhere = {selector}.union(*(keys_of(record) for record in kind.records.values()))
         _refuse_unknown(entries, anywhere, node, collector)
         raise MissionError(collector.problems)
     if is_varying(named):
-        raise named.error("a varying type carries its keys: write {sweep: [{type: ..., ...}, {type: ..., ...}]}")
+        pair = f"{{{selector}: ..., ...}}"
+        raise named.error(f"a varying {selector} carries its keys: write {{sweep: [{pair}, {pair}]}}")
     record = kind.records.get(named.value) if isinstance(named.value, str) else None
     if record is None:
         raise named.error(
-            unknown(f"there is no {node.position.key} of type {named.given()}", str(named.value), list(kind.records))
+            unknown(
+                f"there is no {node.position.key} of {selector} {named.given()}", str(named.value), list(kind.records)
+            )
         )
-    return read_record(record, entries, node, context, also=["type"])
+    return read_record(record, entries, node, context, also=[selector])
 
 
 @_read.register
@@ -191,7 +195,7 @@ def read_record(
                         told = announced_by(values[field.key], entries.get(field.key, section), context)
                         context = replace(context, announced=told)
     collector.finish()
-    return record(**values)
+    return record(**{field.attribute: values[field.key] for field in fields})
 
 
 def _owned(key: str, chosen: dict[str, Chosen], entries: dict[str, Node]) -> dict[str, Node]:

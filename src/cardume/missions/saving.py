@@ -47,8 +47,9 @@ def to_yaml(mission: Mission, directory: Path | None = None) -> str:
     vehicles = own.pop("vehicles")
     common = {key: vehicles[0][key] for key in SHARED if all(vehicle[key] == vehicles[0][key] for vehicle in vehicles)}
     own["vehicles"] = [{k: v for k, v in vehicle.items() if k not in common} for vehicle in vehicles]
-    last = own.pop("require")
-    return "\n".join(_lines({**own, **common, **({"require": last} if last else {})}, 0)) + "\n"
+    last, faults = own.pop("require"), own.pop("faults")
+    ends = {key: value for key, value in (("faults", faults), ("require", last)) if value}
+    return "\n".join(_lines({**own, **common, **ends}, 0)) + "\n"
 
 
 def write(kind: Kind, value: Any, directory: Path | None = None) -> Any:
@@ -99,7 +100,7 @@ def _section(_kind: Group | Forms, value: Any, directory: Path | None) -> dict[s
 @_write.register
 def _variant(kind: Variant, value: Any, directory: Path | None) -> dict[str, Any]:
     name = next(name for name, record in kind.records.items() if isinstance(value, record))
-    return {"type": name, **_fields(type(value), value, directory)}
+    return {kind.selector: name, **_fields(type(value), value, directory)}
 
 
 @_write.register
@@ -120,7 +121,7 @@ def _fields(record: type, value: Any, directory: Path | None) -> dict[str, Any]:
     """A record as its section; what is None is left out, unless a word says it."""
     section: dict[str, Any] = {}
     for field in fields_of(record):
-        item = getattr(value, field.key)
+        item = getattr(value, field.attribute)
         if isinstance(field.kind, Laws) and field.kind.inlined:
             section |= _choice(field.kind, item, directory)
         elif item is not None or None in getattr(field.kind, "words", {}).values():

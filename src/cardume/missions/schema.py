@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import keyword
 import math
 from collections.abc import Callable, Hashable, Mapping
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
@@ -120,6 +121,11 @@ class Name(Kind):
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
+class Member(Kind):
+    """The name of a vehicle of the fleet."""
+
+
+@dataclasses.dataclass(frozen=True, slots=True)
 class Text(Kind):
     """Free text on one line."""
 
@@ -171,9 +177,10 @@ class Group(Kind):
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Variant(Kind):
-    """A section that becomes the record named by its key `type`."""
+    """A section that becomes the record named by its key `type`, or another."""
 
     records: Mapping[str, type] = dataclasses.field(hash=False)
+    selector: str = "type"
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
@@ -204,7 +211,7 @@ class Shared:
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Field:
-    """One key of a record, as its annotation declares it."""
+    """One key of a record, as its annotation declares it; one that Python keeps for itself has a _ behind it there."""
 
     key: str
     kind: Kind
@@ -212,6 +219,11 @@ class Field:
     written: Default | None
     shared: bool
     doc: str
+
+    @property
+    def attribute(self) -> str:
+        """The record's name for it."""
+        return f"{self.key}_" if keyword.iskeyword(self.key) else self.key
 
 
 def fields_of(record: type) -> tuple[Field, ...]:
@@ -243,4 +255,6 @@ def _field(item: dataclasses.Field[Any], marks: tuple[Any, ...]) -> Field:
     def first(of: type) -> Any:
         return next((mark for mark in marks if isinstance(mark, of)), None)
 
-    return Field(item.name, first(Kind), item.default, first(Default), first(Shared) is not None, first(str) or "")
+    return Field(
+        item.name.rstrip("_"), first(Kind), item.default, first(Default), first(Shared) is not None, first(str) or ""
+    )

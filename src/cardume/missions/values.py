@@ -15,6 +15,7 @@ from cardume.missions.schema import (
     File,
     Graph,
     Kind,
+    Member,
     Name,
     Profile,
     Profiled,
@@ -106,6 +107,13 @@ def _word(kind: Word, node: Node, _context: Context) -> str:
 def _name(kind: Name, node: Node, _context: Context) -> str:
     if not isinstance(node.value, str) or not SAFE_NAME.fullmatch(node.value):
         raise refused(kind, node)
+    return node.value
+
+
+@read_value.register
+def _member(kind: Member, node: Node, context: Context) -> str:
+    if not isinstance(node.value, str) or node.value not in context.fleet:
+        raise node.error(unknown(f"there is no vehicle {node.given()}", str(node.value), list(context.fleet)))
     return node.value
 
 

@@ -108,6 +108,18 @@ class Guidance:
     reference_point: Annotated[LawChoice, Laws("reference_point", "reference_point", "projection", inlined=True)]
 
 
+NOT_AT_ALL: Mapping[str, Any] = {"none": None}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Silence:
+    """What a vehicle does where a neighbor has been silent for long, until it is heard again."""
+
+    after: Annotated[float, Quantity("s", POSITIVE), "without news of a neighbor"] = 30.0
+    do: Annotated[str, Word(("go_on", "slow_down", "hold")), "without it, slower, or not at all"] = "go_on"
+    share: Annotated[float, Quantity("", Bounds(0.0, 1.0)), "of the speed along the path, for slow_down"] = 0.5
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coordination:
     """The law that corrects the speed, and who hears whom: one graph for the whole fleet."""
@@ -116,6 +128,9 @@ class Coordination:
     topology: Annotated[Topology, Graph(), "star: the first vehicle is the hub; a matrix's rows are listeners"] = (
         "complete"
     )
+    silence: Annotated[
+        Silence | None, Group(Silence, words=NOT_AT_ALL), "left out: it is thought to go on as it did"
+    ] = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,9 +174,6 @@ def _default_sensors(values: Mapping[str, Any], context: Context) -> Any:
 
 def _unless_alone(section: str, alone: str) -> Default:
     return Default(lambda _values, context: alone if len(context.fleet) == 1 else {})
-
-
-NOT_AT_ALL: Mapping[str, Any] = {"none": None}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,6 +14,7 @@ from cardume.missions.schema import (
     Kind,
     Laws,
     ListOf,
+    Member,
     Name,
     Profiled,
     Quantity,
@@ -67,6 +68,11 @@ def _name(_kind: Name) -> str:
 
 
 @wanted.register
+def _member(_kind: Member) -> str:
+    return "the name of a vehicle"
+
+
+@wanted.register
 def _text(_kind: Text) -> str:
     return "a text on one line"
 
@@ -99,7 +105,7 @@ def _group(kind: Group) -> str:
 
 @wanted.register
 def _variant(kind: Variant) -> str:
-    return f"a mapping with type: one of {', '.join(kind.records)}"
+    return f"a mapping with {kind.selector}: one of {', '.join(kind.records)}"
 
 
 @wanted.register

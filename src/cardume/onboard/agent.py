@@ -23,7 +23,9 @@ from cardume.onboard.navigation import (
 from cardume.onboard.neighborhood import predict_neighbors
 from cardume.onboard.pace import keep_pace
 from cardume.onboard.phases import HOLD_GAIN, HOLD_RADIUS, change_phase, wait_or_go
+from cardume.onboard.screening import screen, stop_if_lost
 from cardume.onboard.sightings import look_around
+from cardume.onboard.silence import yield_to_silence
 from cardume.onboard.telling import Said, report
 from cardume.paths.projection import point_at
 from cardume.paths.table import LENGTH_OWN
@@ -55,6 +57,7 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
 
     Source: paper section 4; (37), (49), (33), (5)-(8), (53)-(55), (3)-(18), (44)-(45), (36).
     """
+    measured = screen(mind, measured, time)
     speed = speed_through_water(mind, measured)
     motion = believed_motion(mind, measured, speed)
     position = navigate(mind, measured, heard, motion, time)
@@ -63,11 +66,11 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
     look_around(mind, measured, position, motion, error, time)
     others = predict_neighbors(mind, heard, error, time)
     change_phase(mind, measured, heard, error, time)
-    along = progress(mind, error, coordinate(mind, others))
+    along = yield_to_silence(mind, progress(mind, error, coordinate(mind, others)), time)
     demand = guide(mind, error, motion, along)
     demand, along = wait_or_go(mind, demand, along, error)
     depth = choose_depth(mind, measured, error, time)
-    reference = compensate(mind, demand, along, depth, motion)
+    reference = stop_if_lost(mind, compensate(mind, demand, along, depth, motion))
     return reference, report(mind, heard, time)
 
 

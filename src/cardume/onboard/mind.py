@@ -11,8 +11,8 @@ LONG_AGO = -1e9  # [s] before any mission
 NEVER = 1e9  # [s] after any mission; [m] beyond any depth
 UNTOLD = -1.0  # [-] phase of one that has not said it: below them all
 
-# The whole numbers of `Mind.features`: what of phases.py, pace.py, depths.py and
-# neighborhood.py a vehicle's mission asks for.
+# The whole numbers of `Mind.features`: what of phases.py, pace.py, depths.py, neighborhood.py, screening.py and
+# silence.py a vehicle's mission asks for.
 (
     ORDERS_START,
     PACE_OVER,
@@ -26,8 +26,10 @@ UNTOLD = -1.0  # [-] phase of one that has not said it: below them all
     ANSWERS,
     FORESEES,
     ROUNDS,
+    SCREENS,
+    YIELDS,
     NUM_FEATURES,
-) = range(13)
+) = range(15)
 OVER_TIME, OVER_PATH = 1, 2  # values of PACE_OVER and DEPTH_OVER; 0: no profile
 
 
@@ -50,6 +52,11 @@ class Datasheet(NamedTuple):
     angle: float = NOTHING  # [rad] azimuth and elevation by USBL
     heading: float = NOTHING  # [rad]
     attitude: float = NOTHING  # [rad] roll and pitch
+    depth: float = NOTHING  # [m]
+    altitude: float = NOTHING  # [m]
+    velocity: float = NOTHING  # [m/s] by DVL
+    shaft_speed: float = NOTHING  # [-] of the speed
+    patience: float = 5.0  # [s] for which the reading of a sensor that works may stay the same
 
 
 class Grid(NamedTuple):
@@ -82,6 +89,8 @@ class Orders(NamedTuple):
     fence_radius: float = 0.0  # [m] of a round geofence; 0: none, or a polygon
     fence_north: float = 0.0  # [m] its center
     fence_east: float = 0.0  # [m]
+    silent_after: float = NEVER  # [s] without news of a neighbor
+    silent_share: float = 1.0  # [-] of the speed along the path while one is silent; 0: it holds its place
 
 
 class Progress(NamedTuple):
@@ -191,6 +200,70 @@ class Told(NamedTuple):
     time_of_fix: float = LONG_AGO  # [s]
 
 
+class Trusted(NamedTuple):
+    """What a vehicle that looks at its readings goes by."""
+
+    heading: float = NOTHING  # [rad]
+    yaw_rate: float = 0.0  # [rad/s]
+    depth: float = NOTHING  # [m] NaN: not known
+    knows_heading: float = 1.0  # [-]
+
+
+class Asked(NamedTuple):
+    """What it asked of its autopilot in the last tick."""
+
+    heading: float = 0.0  # [rad]
+    speed: float = 0.0  # [m/s]
+    depth: float = 0.0  # [m]
+
+
+class Watch(NamedTuple):
+    """What it remembers of one reading."""
+
+    reading: float = NOTHING  # [any] the last number
+    same: float = 0.0  # [s] for which it has not changed
+    doubted: float = NOTHING  # [s] when it was first not believed
+
+
+class Watches(NamedTuple):
+    """A `Watch` of each reading."""
+
+    heading: float = NOTHING  # [rad]
+    heading_same: float = 0.0  # [s]
+    heading_doubted: float = NOTHING  # [s]
+    depth: float = NOTHING  # [m]
+    depth_same: float = 0.0  # [s]
+    depth_doubted: float = NOTHING  # [s]
+    altitude: float = NOTHING  # [m]
+    altitude_same: float = 0.0  # [s]
+    altitude_doubted: float = NOTHING  # [s]
+    shaft_speed: float = NOTHING  # [rad/s]
+    shaft_speed_same: float = 0.0  # [s]
+    shaft_speed_doubted: float = NOTHING  # [s]
+    surge: float = NOTHING  # [m/s]
+    surge_same: float = 0.0  # [s]
+    surge_doubted: float = NOTHING  # [s]
+    north: float = NOTHING  # [m]
+    north_same: float = 0.0  # [s]
+    north_doubted: float = NOTHING  # [s]
+
+
+class Way(NamedTuple):
+    """The last position by GNSS, and how far the vehicle thinks to have come since it changed."""
+
+    north: float = NOTHING  # [m]
+    east: float = NOTHING  # [m]
+    way_north: float = 0.0  # [m]
+    way_east: float = 0.0  # [m]
+
+
+class Echo(NamedTuple):
+    """The last USBL reading of another vehicle."""
+
+    range: float = NOTHING  # [m]
+    azimuth: float = NOTHING  # [rad]
+
+
 class Mind(NamedTuple):
     """All of one vehicle's tables; `known`, `sources` and `neighbors` are lists after their length."""
 
@@ -215,7 +288,22 @@ ORDERS_WIDTH = ORDERS.width
 POINT_WIDTH = 2
 
 OWN = Layout(
-    Setup, Datasheet, DvlReading, Whereabouts, Water, Along, Speech, Correction, Progress, Journal, Sounding, Grid
+    Setup,
+    Datasheet,
+    DvlReading,
+    Whereabouts,
+    Water,
+    Along,
+    Speech,
+    Correction,
+    Progress,
+    Journal,
+    Sounding,
+    Grid,
+    Trusted,
+    Asked,
+    Watches,
+    Way,
 )
 get_setup, put_setup = OWN.reader(Setup), OWN.writer(Setup)
 get_datasheet = OWN.reader(Datasheet)
@@ -229,17 +317,23 @@ get_progress, put_progress = OWN.reader(Progress), OWN.writer(Progress)
 get_journal, put_journal = OWN.reader(Journal), OWN.writer(Journal)
 get_grid = OWN.reader(Grid)
 get_sounding, put_sounding = OWN.reader(Sounding), OWN.writer(Sounding)
+get_trusted, put_trusted = OWN.reader(Trusted), OWN.writer(Trusted)
+get_asked, put_asked = OWN.reader(Asked), OWN.writer(Asked)
+get_way, put_way = OWN.reader(Way), OWN.writer(Way)
+WATCH = Layout(Watch)
+get_watch, put_watch = WATCH.reader(Watch), WATCH.writer(Watch)
 
 OWN_WIDTH = OWN.width
 
 # What a vehicle knows of one other; the place is where on its own path that one was seen.
-OTHERS = Layout(News, Fresh, Outlook, LastSeen, Told, PathPlace)
+OTHERS = Layout(News, Fresh, Outlook, LastSeen, Told, PathPlace, Echo)
 get_news, put_news = OTHERS.reader(News), OTHERS.writer(News)
 get_fresh, put_fresh = OTHERS.reader(Fresh), OTHERS.writer(Fresh)
 get_outlook, put_outlook = OTHERS.reader(Outlook), OTHERS.writer(Outlook)
 get_last_seen, put_last_seen = OTHERS.reader(LastSeen), OTHERS.writer(LastSeen)
 get_told, put_told = OTHERS.reader(Told), OTHERS.writer(Told)
 get_seen_place, put_seen_place = OTHERS.reader(PathPlace), OTHERS.writer(PathPlace)
+get_echo, put_echo = OTHERS.reader(Echo), OTHERS.writer(Echo)
 
 OTHERS_WIDTH = OTHERS.width
 

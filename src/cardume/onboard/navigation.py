@@ -6,11 +6,13 @@ from cardume.onboard.estimation.current import observe
 from cardume.onboard.estimation.position import estimate_position
 from cardume.onboard.estimation.speed.base import read_shaft
 from cardume.onboard.mind import (
+    SCREENS,
     Along,
     Mind,
     Told,
     Whereabouts,
     get_along,
+    get_asked,
     get_current,
     get_datasheet,
     get_setup,
@@ -47,11 +49,15 @@ NEAREST_CENTER = 0.1  # of 1 - c e: nearer the centre of an arc the path's rate 
 
 @compiled
 def speed_through_water(mind: Mind, measured: Measured) -> DvlReading:
-    """Surge and sway [m/s]: from the DVL where there is one, else surge by (37) and no sway."""
+    """Surge and sway [m/s]: from the DVL where there is one, else surge by (37) and no sway; if both fail, as asked."""
     shaft = read_shaft(mind.book, 0, ShaftReading(measured.shaft_speed))
     has_dvl = measured.dvl_surge == measured.dvl_surge
     has_shaft = shaft == shaft
     surge = where(has_dvl, measured.dvl_surge, where(has_shaft, shaft, 0.0))
+    if load(mind.features, SCREENS) > 0:
+        told = get_datasheet(mind.own, 0)
+        carries = (told.velocity == told.velocity) | (told.shaft_speed == told.shaft_speed)
+        surge = where(carries & negate(has_dvl | has_shaft), get_asked(mind.own, 0).speed, surge)
     speed = DvlReading(surge, where(has_dvl, measured.dvl_sway, 0.0))
     put_speed(mind.own, 0, speed)
     return speed
@@ -93,7 +99,7 @@ def navigate(mind: Mind, measured: Measured, heard: Rows, motion: Motion, time: 
     after = Whereabouts(
         position.north,
         position.east,
-        where((chosen.north == chosen.north) & (valid > before), valid, before),
+        where((chosen.north == chosen.north) & ((valid > before) | (before > time + SAME)), valid, before),
         position.north_variance,
         position.covariance,
         position.east_variance,
@@ -112,7 +118,8 @@ def newest_fix(mind: Mind, heard: Rows, time: float) -> Fix:
         message = message_from(heard, mind.size, source)
         if some(is_fresh(message)):
             seen = sighting_in(message, mind.me)
-            newer = is_fresh(message) & (seen.time_of_fix > valid + SAME) & negate(seen.range == seen.range)
+            last_known = where(valid > time + SAME, time, valid)  # the own clock was set back
+            newer = is_fresh(message) & (seen.time_of_fix > last_known + SAME) & negate(seen.range == seen.range)
             fix = where(newer, _fix_told(seen, 0.0 * valid, time), fix)
             valid = where(newer, seen.time_of_fix, valid)
     return fix
@@ -131,11 +138,12 @@ def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, depth: float, time: float
     """
     fix = _no_fix(get_whereabouts(mind.own, 0).time_of_fix)
     for source in range(load(mind.sources, 0)):
-        sender = load(mind.sources, source + 1)
-        seen = sighting_in(message_from(heard, mind.size, source), mind.me)
+        sender, message = load(mind.sources, source + 1), message_from(heard, mind.size, source)
+        seen = sighting_in(message, mind.me)
         used = get_told(mind.others, sender).time_of_fix
         free = negate(by_gnss | (fix.north == fix.north))
-        is_unused = free & (seen.time_of_fix > used + SAME)
+        was_set_back = is_fresh(message) & (used > time + SAME)
+        is_unused = free & ((seen.time_of_fix > used + SAME) | was_set_back)
         if some(is_unused):
             fix = where(is_unused, _fix_told(seen, depth, time), fix)
             put_told(mind.others, sender, Told(where(is_unused, seen.time_of_fix, used)))
@@ -144,13 +152,14 @@ def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, depth: float, time: float
 
 @compiled
 def _fix_told(seen: Sighting, depth: float, time: float) -> Fix:
-    """A sighting as a fix; of a slant range the level part, at least a hundredth of it."""
+    """A sighting as a fix; of a slant range the level part, at least a hundredth of it.  None is of the future."""
+    age = time - seen.time_of_fix
     below, slant = where(seen.depth == seen.depth, depth - seen.depth, depth), seen.range * seen.range
     level = slant - where(depth == depth, below * below, 0.0)
     return Fix(
         seen.north,
         seen.east,
-        time - seen.time_of_fix,
+        where(age < -SAME, 0.0, age),
         seen.north_variance,
         seen.covariance,
         seen.east_variance,

@@ -1,11 +1,12 @@
 """What a vehicle hears of the others, and what they do meanwhile."""
 
-from cardume.compiler import Rows, compiled, load, some, where
+from cardume.compiler import Rows, compiled, load, negate, some, where
 from cardume.onboard.coordination import correct_speed
 from cardume.onboard.estimation.neighbors import predict
 from cardume.onboard.mind import (
     FORESEES,
     HAS_PHASES,
+    YIELDS,
     Fresh,
     Mind,
     News,
@@ -25,7 +26,10 @@ from cardume.onboard.mind import (
 )
 from cardume.onboard.pace import pace_gained, pace_of_neighbor
 from cardume.onboard.phases import has_told, is_waiting, takes_part
+from cardume.onboard.silence import is_silent
 from cardume.signals import NOTHING, Disagreement, NeighborReport, PathError
+
+SAME = 1e-6  # [s] within rounding
 
 
 @compiled
@@ -36,18 +40,18 @@ def forget_news(mind: Mind) -> None:
 
 
 @compiled
-def listen(mind: Mind, heard: Rows) -> None:
+def listen(mind: Mind, heard: Rows, time: float) -> None:
     """Note the newest that the messages of this tick say of each vehicle that matters."""
     for k in range(1, load(mind.known, 0) + 1):
         vehicle = load(mind.known, k)
         for source in range(load(mind.sources, 0)):
             message = message_from(heard, mind.size, source)
             if some(is_fresh(message)):
-                note(mind, message, load(mind.sources, source + 1), vehicle)
+                note(mind, message, load(mind.sources, source + 1), vehicle, time)
 
 
 @compiled
-def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
+def note(mind: Mind, message: Rows, sender: int, vehicle: int, time: float) -> None:
     """Learn a vehicle's coordination state from a message, its own or a sighting, if that is newer, and its phase.
 
     Phases only follow one another, so that a message which a sighting has overtaken still tells a later one.
@@ -61,8 +65,10 @@ def note(mind: Mind, message: Rows, sender: int, vehicle: int) -> None:
     before, is_read = get_news(mind.others, vehicle), is_fresh(message)
     phase = where(is_read & (learnt.phase > before.phase), learnt.phase, before.phase)
     put_news(mind.others, vehicle, News(before.state, before.path_speed, before.time_of_validity, phase))
-    is_new = is_read & (learnt.time_of_validity > before.time_of_validity)
-    learn(mind, vehicle, is_new, News(learnt.state, learnt.path_speed, learnt.time_of_validity, phase))
+    was_set_back = before.time_of_validity > time + SAME  # the own clock, or somebody told of the future
+    is_new = is_read & ((learnt.time_of_validity > before.time_of_validity) | was_set_back)
+    valid = where(learnt.time_of_validity > time + SAME, time, learnt.time_of_validity)
+    learn(mind, vehicle, is_new, News(learnt.state, learnt.path_speed, valid, phase))
 
 
 @compiled
@@ -75,7 +81,7 @@ def learn(mind: Mind, vehicle: int, is_new: bool, news: News) -> None:
 @compiled
 def predict_neighbors(mind: Mind, heard: Rows, error: PathError, time: float) -> Disagreement:
     """Bring what is known of the others up to now, and compare: (53)-(55), (D^-1 L gamma)_i."""
-    listen(mind, heard)
+    listen(mind, heard, time)
     own_before = error.path_parameter - mind.book.dt * get_along(mind.own, 0).path_speed
     for k in range(1, load(mind.known, 0) + 1):
         expect_correction(mind, load(mind.known, k), own_before)
@@ -131,6 +137,8 @@ def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) ->
         waits = is_waiting(news.phase) & has_told(news.phase)
         nominal, expected = where(waits, 0.0, nominal), where(waits, 0.0, expected)
         is_known = is_known & takes_part(news.phase)
+    if load(mind.features, YIELDS) > 0:
+        is_known = is_known & negate(is_silent(mind, vehicle, time))
     heard_last = NeighborReport(is_new, news.state, path_speed, age, nominal, expected)
     predicted = predict(mind.book, vehicle, heard_last)
     put_outlook(mind.others, vehicle, Outlook(where(is_known, predicted, NOTHING), outlook.correction))

@@ -24,6 +24,7 @@ from cardume.onboard.mind import (
     get_setup,
     get_sounding,
     get_whereabouts,
+    head_of,
     is_fresh,
     message_from,
     neighbors_of,
@@ -90,7 +91,7 @@ def change_phase(mind: Mind, measured: Measured, heard: Rows, error: PathError, 
 
 @compiled
 def last_heard(mind: Mind, heard: Rows, before: float, time: float) -> float:
-    """When [s] this vehicle last heard anybody.
+    """When [s] this vehicle last heard anybody say something recent: whoever replays old packets is no company.
 
     Args:
         mind: of the vehicle.
@@ -99,7 +100,9 @@ def last_heard(mind: Mind, heard: Rows, before: float, time: float) -> float:
         time: [s] now.
     """
     for source in range(load(mind.sources, 0)):
-        before = where(is_fresh(message_from(heard, mind.size, source)), time + 0.0 * before, before)
+        message = message_from(heard, mind.size, source)
+        is_recent = time - head_of(message).time_of_validity < get_orders(mind.orders, 0).silence
+        before = where(is_fresh(message) & is_recent, time + 0.0 * before, before)
     return before
 
 

@@ -17,6 +17,7 @@ from cardume.onboard.mind import (
     put_seen_place,
 )
 from cardume.onboard.neighborhood import forget_news, learn
+from cardume.onboard.screening import is_believable
 from cardume.paths.projection import project
 from cardume.paths.table import PathPlace, place_near
 from cardume.signals import NOTHING, Measured, Motion, NavigationEstimate, PathError, Place
@@ -41,6 +42,7 @@ def look_around(
         age = load(reading, 3)
         is_new = age == age
         if some(is_new):
+            is_new = is_believable(mind, vehicle, is_new, load(reading, 0), load(reading, 1))
             ahead, starboard, down = to_cartesian(load(reading, 0), load(reading, 1), load(reading, 2))
             north, east, down = to_ned_3d(
                 measured.roll, measured.pitch, measured.heading - measured.yaw_rate * age, ahead, starboard, down

@@ -8,6 +8,7 @@ from cardume.onboard.messaging import decide_to_send
 from cardume.onboard.mind import (
     ANSWERS,
     FORESEES,
+    NEVER,
     ROUNDS,
     Fresh,
     Grid,
@@ -43,6 +44,7 @@ def report(mind: Mind, heard: Rows, time: float) -> Said:
     """What to tell the others now, if anything."""
     along, speech, setup = get_along(mind.own, 0), get_speech(mind.own, 0), get_setup(mind.own, 0)
     elapsed, place = time - speech.last_sent, 1.0 * mind.me
+    elapsed = where(elapsed < 0.0, NEVER, elapsed)  # the clock was set back since
     outbox = Outbox(elapsed, along.coordination_state, along.path_speed, time, place, 1.0 * mind.size)
     asked, deviation = 0.0 * outbox.elapsed, NOTHING * outbox.elapsed
     if load(mind.features, ANSWERS) > 0:

@@ -15,6 +15,7 @@ from cardume.onboard.mind import NUM_FEATURES, ORDERS_START, OTHERS_WIDTH, OWN_W
 from cardume.paths.table import PathPlace
 from cardume.signals import AhrsReading, Command, DvlReading, Measured, Reference, ShaftReading, VesselState, Water
 from cardume.world.acoustics.medium import Medium
+from cardume.world.faults import Fault, Kept, Weakness
 
 HANDLES = len(FAMILIES) * COLUMNS
 
@@ -100,10 +101,17 @@ get_satellite, put_satellite = VEHICLE.reader(Satellite), VEHICLE.writer(Satelli
 SENSORS = ("gnss", "ahrs", "depth", "usbl", "dvl", "thruster_speed", "altimeter")
 STREAMS = (*SENSORS, "link")  # each with its own random numbers
 NUM_SENSORS, NUM_STREAMS = len(SENSORS), len(STREAMS)
+GNSS, AHRS, DEPTH, USBL, DVL, THRUSTER_SPEED, ALTIMETER = range(NUM_SENSORS)
 TIMING, KEY = Layout(Timing), Layout(Key)
 TIMING.lay_over(Timing, "next_sample", Due)
 get_timing, put_due = TIMING.reader(Timing), TIMING.writer(Due)
 get_key, put_key = KEY.reader(Key), KEY.writer(Key)
+
+FAULTS = Layout(Fault, Weakness, Kept, Key)
+get_fault, get_weakness = FAULTS.reader(Fault), FAULTS.reader(Weakness)
+get_kept, put_kept = FAULTS.reader(Kept), FAULTS.writer(Kept)
+get_fault_key = FAULTS.reader(Key)
+KIND, WHOM, SENSOR, FAULT_COLUMNS = range(4)  # columns of Faults.kinds
 
 MODEM = Layout(Medium)
 get_medium = MODEM.reader(Medium)
@@ -145,6 +153,17 @@ class Air(NamedTuple):
     logged: Rows  # (link, slot) the row of the log of messages that each stands in
 
 
+class Faults(NamedTuple):
+    """What goes wrong."""
+
+    num: int  # [-] 0: nothing, and none of the rest is looked at
+    num_clocks: int  # [-] clocks that go wrong
+    kinds: Any  # Ints (fault, FAULT_COLUMNS) kind, place of the vehicle or -1 for all, sensor or -1
+    rows: Rows  # (fault, the records of FAULTS)
+    recordings: Rows  # (fault, message) packets that somebody recorded
+    clocks: Any  # SharedRows (clock, 5): vehicle, begin, end [s], offset [s], drift; the same in all lanes
+
+
 class Fleet(NamedTuple):
     """One mission, or eight, as compiled code sees it."""
 
@@ -178,6 +197,7 @@ class Fleet(NamedTuple):
     is_watched: int  # [-] 1: depth, altitude, geofence or separation are limited
     has_weather: int  # [-] 1: the current has noise of its own
     air: Air
+    faults: Faults
     scores: Rows  # (vehicle, the records of SCORES)
     fleet_score: Rows  # FleetScore
     histograms: Rows  # (vehicle, metric, bin)
@@ -207,6 +227,8 @@ class Whole(NamedTuple):
     has_weather: int = 0
     is_shared: int = 0
     asks: int = 0
+    num_faults: int = 0
+    num_clocks: int = 0
 
 
 class Tables(NamedTuple):
@@ -241,6 +263,10 @@ class Tables(NamedTuple):
     modems: np.ndarray
     on_air: np.ndarray
     logged: np.ndarray
+    fault_kinds: np.ndarray
+    faults: np.ndarray
+    recordings: np.ndarray
+    clocks: np.ndarray
     scores: np.ndarray
     fleet_score: np.ndarray
     histograms: np.ndarray
@@ -271,6 +297,14 @@ def fleet_of(tables: Tables) -> Fleet:
         rows_of(tables.modems),
         rows_of(tables.on_air),
         rows_of(tables.logged),
+    )
+    faults = Faults(
+        whole.num_faults,
+        whole.num_clocks,
+        rows_of(tables.fault_kinds),
+        rows_of(tables.faults),
+        rows_of(tables.recordings),
+        rows_of(tables.clocks),
     )
     return Fleet(
         whole.size,
@@ -303,6 +337,7 @@ def fleet_of(tables: Tables) -> Fleet:
         whole.is_watched,
         whole.has_weather,
         air,
+        faults,
         rows_of(tables.scores),
         rows_of(tables.fleet_score),
         rows_of(tables.histograms),

@@ -4,6 +4,7 @@ from cardume.compiler import compiled, where
 from cardume.onboard.control.base import steer
 from cardume.onboard.mind import get_speed
 from cardume.signals import Feedback, Reference, VesselState, Water
+from cardume.simulation.faults import command_in_fault, held_aboard, reference_in_fault
 from cardume.simulation.fleet import (
     Fleet,
     Held,
@@ -16,7 +17,7 @@ from cardume.vehicles.base import step_vehicle
 
 
 @compiled
-def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water) -> VesselState:
+def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water, time: float) -> VesselState:
     """Let one vehicle follow its reference for one tick, in the water around it.
 
     Between ticks the autopilot sees the measured values of the tick, carried on by the measured rates.
@@ -24,10 +25,15 @@ def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water) -> Vess
     dt = fleet.tick / fleet.substeps
     book = book_of(fleet, vehicle, dt)
     held = get_held(fleet.vehicles, vehicle)
+    if fleet.faults.num > 0:
+        held = held_aboard(fleet, vehicle, held)
+        reference = reference_in_fault(fleet, vehicle, reference, time)
     vessel = get_vessel(fleet.vehicles, vehicle)
     surge = get_speed(fleet.minds, vehicle).surge
     for step in range(fleet.substeps):
         command = steer(book, 0, feedback_of(held, surge, reference, step * dt))
+        if fleet.faults.num > 0:
+            command = command_in_fault(fleet, vehicle, command, time)
         vessel = step_vehicle(book, 0, vessel, command, reference, water)
         put_command(fleet.vehicles, vehicle, command)
     return vessel

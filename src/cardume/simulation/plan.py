@@ -13,6 +13,7 @@ from cardume.signals import VesselState
 from cardume.simulation.safety import Safety
 from cardume.simulation.score import Rules
 from cardume.world.acoustics.medium import Medium
+from cardume.world.faults import FROZEN, Fault, Weakness
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,32 @@ class OrderBook:
 
 
 @dataclass(frozen=True)
+class FaultPlan:
+    """One thing that goes wrong; a kind of a mission file may be several.
+
+    Attributes:
+        kind: one of those of `world/faults`.
+        vehicle: whose; None: of all.
+        numbers: when, and by how much.
+        sensor: place in SENSORS; -1: of no sensor.
+        weakness: of thrusters.
+        says: what it is, in words; "": it belongs to another one.
+    """
+
+    kind: int
+    vehicle: str | None
+    numbers: Fault
+    sensor: int = -1
+    weakness: Weakness = Weakness()
+    says: str = ""
+
+    @property
+    def keeps_reading(self) -> bool:
+        """Whether it remembers a reading, of which there is none at first."""
+        return self.kind == FROZEN
+
+
+@dataclass(frozen=True)
 class VehiclePlan:
     """One vehicle of a mission.
 
@@ -94,6 +121,7 @@ class VehiclePlan:
         datasheet: what it is told of its sensors' errors.
         medium: its modem and the water, where vehicles share the water; all of a fleet have one, or none.
         grid: what is left of the numbers that it sends; None: all.
+        screens: whether it looks at its readings before it believes them.
     """
 
     name: str
@@ -108,6 +136,7 @@ class VehiclePlan:
     datasheet: Datasheet = Datasheet()
     medium: Medium | None = None
     grid: Grid | None = None
+    screens: bool = False
 
     @property
     def believed_start(self) -> tuple[float, float]:
@@ -132,6 +161,7 @@ class Plan:
         seabed: (n,) table of a gridded seabed.
         separation: [m] that two vehicles are not to come nearer; 0: no limit.
         is_watched: whether anything of depth, altitude, geofence or separation is limited.
+        faults: what goes wrong.
     """
 
     vehicles: tuple[VehiclePlan, ...]
@@ -146,6 +176,7 @@ class Plan:
     seabed: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(1))
     separation: float = 0.0
     is_watched: bool = False
+    faults: tuple[FaultPlan, ...] = ()
 
     @property
     def num_ticks(self) -> int:

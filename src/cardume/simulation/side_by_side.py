@@ -42,7 +42,7 @@ def join(tables: Sequence[Tables], into: Tables | None = None) -> Tables:
 
 
 def _is_shared(name: str, part: Any) -> bool:
-    return name in ("field", "seabed") or not isinstance(part, np.ndarray) or part.dtype == np.int64
+    return name in ("field", "seabed", "clocks") or not isinstance(part, np.ndarray) or part.dtype == np.int64
 
 
 def _fit(part: Any, first: Any, is_shared: bool) -> bool:

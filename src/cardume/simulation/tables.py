@@ -12,8 +12,11 @@ from cardume.compiler.reach import fields_read
 from cardume.laws import COLUMNS, FAMILIES
 from cardume.maths.random import Key, random_key
 from cardume.onboard.mind import (
+    NEVER as NEVER_TOLD,
     OTHERS,
     OWN,
+    Asked,
+    Echo,
     Fresh,
     Grid,
     Journal,
@@ -24,6 +27,9 @@ from cardume.onboard.mind import (
     Sounding,
     Speech,
     Told,
+    Trusted,
+    Watches,
+    Way,
     Whereabouts,
     inbox_width,
 )
@@ -31,6 +37,7 @@ from cardume.onboard.phases import DIVE, GATHER, GO, PHASES
 from cardume.paths.along import arc_length_at
 from cardume.paths.projection import point_at
 from cardume.signals import Forecast, Noise, Question
+from cardume.simulation.fault_tables import fault_tables, num_clocks
 from cardume.simulation.fleet import (
     KEY,
     MODEM,
@@ -100,6 +107,8 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: M
         int(any(_noise_pairs(v.laws["current"], memo) for v in vehicles if "current" in v.laws)),
         int(any(v.medium for v in vehicles)),
         int(asks_for_fixes(vehicles)),
+        len(plan.faults),
+        num_clocks(plan),
     )
     blank = memo.recall("blank", (), lambda: _blank(whole, records, room), (whole, records, room))
     tables = blank._replace(
@@ -118,7 +127,8 @@ def make_tables(plan: Plan, lanes: bool = False, with_laws: bool = True, memo: M
             "counts", (), lambda: _counts(records, room, plan), (records, room, plan.log_period, plan.tick)
         ),
     )
-    return tables._replace(**_rows(plan, vehicles, memo))
+    faults: dict[str, Any] = fault_tables(plan, whole.message_width) if plan.faults else {}
+    return tables._replace(**_rows(plan, vehicles, memo), **faults)
 
 
 def _rows(plan: Plan, vehicles: Sequence[VehiclePlan], memo: Memo) -> dict[str, Any]:
@@ -192,6 +202,10 @@ def _blank(whole: Whole, records: int, room: int) -> Tables:
         modems=np.zeros(size * MODEM.width),
         on_air=np.tile(np.array(OnAir()), size * size * whole.slots if whole.is_shared else 1),
         logged=np.full(links * whole.slots if whole.is_shared else 1, -1.0),
+        fault_kinds=nothing,
+        faults=none,
+        recordings=none,
+        clocks=none,
         scores=none,
         fleet_score=none,
         histograms=np.zeros(size * HISTOGRAMS * BINS),
@@ -234,9 +248,9 @@ def _first_phase(vehicle: VehiclePlan) -> Progress:
     return Progress(phase, 0.0, 0.0, start.north, start.east)
 
 
-def _unwritten(vehicle: VehiclePlan) -> tuple[Journal, Sounding, Grid]:
+def _unwritten(vehicle: VehiclePlan) -> tuple[Any, ...]:
     begun = PHASES[round(_first_phase(vehicle).phase)]
-    return Journal(**{begun: 0.0}), Sounding(), vehicle.grid or Grid()
+    return Journal(**{begun: 0.0}), Sounding(), vehicle.grid or Grid(), Trusted(), Asked(), Watches(), Way()
 
 
 def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
@@ -248,14 +262,20 @@ def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _talk(vehicle: VehiclePlan) -> list[int]:
-    """Whether a vehicle answers questions, foresees what others make of its words, and rounds them."""
+    """Whether a vehicle answers questions, foresees what others make of its words, rounds them, screens readings."""
     law = vehicle.laws["messaging"].law
-    return [int(law.asks_for(Question)), int(law.asks_for(Forecast)), int(vehicle.grid is not None)]
+    return [
+        int(law.asks_for(Question)),
+        int(law.asks_for(Forecast)),
+        int(vehicle.grid is not None),
+        int(vehicle.screens),
+        int(vehicle.orders.orders.silent_after < NEVER_TOLD),
+    ]
 
 
 def _known_of(vehicle: VehiclePlan) -> np.ndarray:
     """All that the others know of a vehicle before the mission: where on its path it starts."""
-    return _row(OTHERS, News(), Fresh(), Outlook(), LastSeen(), Told(), vehicle.place)
+    return _row(OTHERS, News(), Fresh(), Outlook(), LastSeen(), Told(), vehicle.place, Echo())
 
 
 def _timing_row(vehicle: VehiclePlan, tick: float, memo: Memo) -> np.ndarray:

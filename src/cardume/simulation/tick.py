@@ -7,6 +7,7 @@ from cardume.onboard.phases import takes_part
 from cardume.paths.projection import project
 from cardume.signals import Noise, Place, VesselState, Water, Where
 from cardume.simulation.air import arrived, carry, speak
+from cardume.simulation.faults import clock_of, finished_in_fault, water_in_fault
 from cardume.simulation.fleet import (
     NUM_SENSORS,
     NUM_STREAMS,
@@ -53,20 +54,20 @@ def tick(fleet: Fleet, now: int) -> bool:
     for i in range(fleet.size):
         truth = get_vessel(fleet.vehicles, i)
         put_water(fleet.vehicles, i, current_at(fleet, i, truth, weather, time))
-        find_on_path(fleet, i, truth)
+        find_on_path(fleet, i, truth, time)
     for i in range(fleet.size):
         measured = sense(fleet, i, now)
         heard = arrived(fleet, i, time)
-        reference, said = decide(passing(mind_of(fleet, i)), measured, heard, time)
+        reference, said = decide(passing(mind_of(fleet, i)), measured, heard, clock_of(fleet, i, time))
         put_reference(fleet.vehicles, i, reference)
-        speak(fleet, i, said)
+        speak(fleet, i, said, time)
     carry(fleet, time, now)  # delay, loss
     record(fleet, now)
     for i in range(fleet.size):
         score(fleet, i, get_vessel(fleet.vehicles, i), get_on_path(fleet.vehicles, i), time)
     score_fleet(fleet, time)
     for i in range(fleet.size):
-        vessel = move(fleet, i, get_reference(fleet.vehicles, i), get_water(fleet.vehicles, i))
+        vessel = move(fleet, i, get_reference(fleet.vehicles, i), get_water(fleet.vehicles, i), time)
         put_vessel(fleet.vehicles, i, vessel)
     return health(fleet, time)
 
@@ -85,11 +86,14 @@ def common_noise(fleet: Fleet, now: int) -> Noise:
 def current_at(fleet: Fleet, vehicle: int, truth: VesselState, weather: Noise, time: float) -> Water:
     """The water around a vehicle."""
     place = Where(truth.north, truth.east, truth.depth, time, fleet.field)
-    return flow(book_of(fleet, vehicle, fleet.tick), 0, place, weather)
+    water = flow(book_of(fleet, vehicle, fleet.tick), 0, place, weather)
+    if fleet.faults.num > 0:
+        water = water_in_fault(fleet, vehicle, water, time)
+    return water
 
 
 @compiled
-def find_on_path(fleet: Fleet, vehicle: int, truth: VesselState) -> None:
+def find_on_path(fleet: Fleet, vehicle: int, truth: VesselState, time: float) -> None:
     """Where a vehicle truly is on its path."""
     path: Rows = at(fleet.paths, load(fleet.path_starts, vehicle))
     error, place = project(Place(truth.north, truth.east, path), get_true_place(fleet.vehicles, vehicle))
@@ -97,6 +101,8 @@ def find_on_path(fleet: Fleet, vehicle: int, truth: VesselState) -> None:
     finished = where(error.finished > 0.5, 1.0, get_on_path(fleet.vehicles, vehicle).finished)
     if fleet.has_phases > 0:
         finished = where(takes_part(get_progress(fleet.minds, vehicle).phase), finished, 1.0)
+    if fleet.faults.num > 0:
+        finished = finished_in_fault(fleet, vehicle, finished, time)
     on_path = OnPath(
         error.cross_track,
         error.along_track,
