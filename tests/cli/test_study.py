@@ -15,7 +15,7 @@ import pytest
 import xarray
 
 import cardume as package
-from cardume.studies import beginning
+from cardume.studies import beginning, distributing, forecast
 from cli.stand_ins import Result
 from studies.missions import NOISY
 
@@ -85,7 +85,7 @@ def test_quiet_is_quiet(here: Path, cardume: Command) -> None:
         (["--runs", "4", "--set", "current.speed=0", "--set", "vehicles.a.sensors=ideal"], "nothing varies"),
         (["--runs", "4", "-o", "line.yaml"], "-o line.yaml: is a file"),
         (["--runs", "4", "-o", "."], "is not empty, and holds no study"),
-        (["--runs", "4", "-o", "line.yaml/below"], "is a file, so nothing fits below it"),
+        (["--runs", "4", "-o", "line.yaml/below"], "is a file, so no results fit below it"),
         (["--resume"], "there is no study in runs/line-study to continue"),
         (["--resume", "-o", "nowhere"], "nowhere does not exist"),
         (["--runs", "4", "--set", "current.speed={uniform: [1]}"], "uniform needs [low, high]"),
@@ -95,8 +95,54 @@ def test_bad_input_is_told_and_leaves_nothing(here: Path, cardume: Command, argu
     ended = cardume("study", "line.yaml", *arguments)
     assert ended.code == 2, ended.err
     assert said in ended.err
-    assert [path.name for path in here.iterdir()] in (["line.yaml"], ["runs", "line.yaml"], ["line.yaml", "runs"])
-    assert not list((here / "runs").rglob("*"))
+    assert [path.name for path in here.iterdir()] == ["line.yaml"]
+
+
+def test_only_plain_digits_number_a_study(here: Path, cardume: Command) -> None:
+    """Python calls superscript two a digit, and makes no number of it."""
+    (here / "runs/line-study/\u00b2").mkdir(parents=True)
+    assert "there is no study in runs/line-study" in cardume("study", "line.yaml", "--resume").err
+    assert cardume("study", "line.yaml", "--runs", "2", "-q", "--no-figures").code == 0
+    assert (here / "runs/line-study/001/study.zarr").is_dir()
+
+
+def test_a_study_that_lacks_what_it_says_of_itself_is_told(here: Path, cardume: Command) -> None:
+    assert cardume("study", "line.yaml", "--runs", "2", "-q", "--no-figures", "-o", "it").code == 0
+    file = here / "it/study.zarr/zarr.json"
+    whole = json.loads(file.read_text())
+    for key, value in {"mission": 3, "runs": "many", "files": [], "sampling": None, "seed": 1.5, "swept": "x"}.items():
+        changed = json.loads(file.read_text()) | {"attributes": whole["attributes"] | {key: value}}
+        file.write_text(json.dumps(changed))
+        for command in (["study", "line.yaml", "--resume", "-o", "it"], ["report", "it"]):
+            ended = cardume(*command)
+            assert ended.code == 2, ended.err
+            assert f"is damaged (its {key} is" in ended.err
+    changed = whole | {"attributes": whole["attributes"] | {"mission": whole["attributes"]["mission"] + "# mine\n"}}
+    file.write_text(json.dumps(changed))
+    assert "is damaged (its mission is not the one of its mission_hash)" in cardume("report", "it").err
+
+
+def test_a_wrong_scheduler_is_told_before_anything_flies(
+    here: Path, cardume: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(distributing, "PATIENCE", 0.5)
+    monkeypatch.setattr(forecast, "fly_seeds", lambda *given, **named: pytest.fail("flown"))
+    ended = cardume("study", "line.yaml", "--runs", "4", "--scheduler", "tcp://127.0.0.1:9")
+    assert ended.code == 2
+    assert "no Dask scheduler answers there" in ended.err
+    assert [path.name for path in here.iterdir()] == ["line.yaml"]
+
+
+def test_a_place_that_refuses_to_be_made_is_no_bug(
+    here: Path, cardume: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_given: object) -> None:
+        raise OSError(errno.EIO, "Input/output error")
+
+    monkeypatch.setattr(beginning, "create_study", refuse)
+    ended = cardume("study", "line.yaml", "--runs", "4", "-o", "it")
+    assert ended.code == 3
+    assert "could not be written to it: Input/output error; nothing was kept there: choose another place" in ended.err
 
 
 def test_an_empty_directory_of_the_users_survives_an_error(here: Path, cardume: Command) -> None:

@@ -13,9 +13,10 @@ from cardume.errors import InputError
 from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
+from cardume.missions.results import choose_destination
 from cardume.studies import flying, work
 from cardume.studies.comparing import Comparison, check_seeds
-from cardume.studies.keeping import comparison_destination, keep_comparison, read_comparison, to_csv
+from cardume.studies.keeping import keep_comparison, read_comparison, to_csv
 from studies.missions import LINE, NOISY
 
 LAWS = {"guidance.law": ["line_of_sight", "arcsine"]}
@@ -163,7 +164,7 @@ def test_numbers_of_numpy_are_seeds_and_fractions_are_not() -> None:
 def test_all_numbers_and_what_they_say_are_kept(noisy: Comparison, tmp_path: Path) -> None:
     target = tmp_path / "out"
     where, told = keep_comparison(
-        comparison_destination("x", target), "x", noisy, words=["so it is"], version="1", draw=None
+        choose_destination("x", target, read_comparison), "x", noisy, words=["so it is"], version="1", draw=None
     )
     assert where == target
     assert read_comparison(target) == told
@@ -183,14 +184,14 @@ def test_a_second_comparison_takes_the_place_of_the_first_but_of_nothing_else(
 ) -> None:
     target = tmp_path / "out"
     for _ in range(2):
-        keep_comparison(comparison_destination("x", target), "x", noisy, version="1")
+        keep_comparison(choose_destination("x", target, read_comparison), "x", noisy, version="1")
     (target / "mine.txt").write_text("mine")
     with pytest.raises(InputError, match=r"mine\.txt"):
-        comparison_destination("x", target)
+        choose_destination("x", target, read_comparison)
     (target / "mine.txt").unlink()
     (target / "compare.json").write_text(json.dumps({"cardume_summary": 1}))
     with pytest.raises(InputError, match="not a run of cardume"):
-        comparison_destination("x", target)
+        choose_destination("x", target, read_comparison)
 
 
 def test_a_disk_that_fills_leaves_nothing(noisy: Comparison, tmp_path: Path) -> None:
@@ -200,5 +201,5 @@ def test_a_disk_that_fills_leaves_nothing(noisy: Comparison, tmp_path: Path) -> 
         raise OSError(28, "No space left on device")
 
     with pytest.raises(ResultsError, match="full"):
-        keep_comparison(comparison_destination("x", tmp_path / "out"), "x", noisy, version="1", draw=draw)
+        keep_comparison(choose_destination("x", tmp_path / "out", read_comparison), "x", noisy, version="1", draw=draw)
     assert list(tmp_path.iterdir()) == []

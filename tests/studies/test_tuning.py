@@ -4,21 +4,28 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import cardume
-from cardume.errors import InputError
+from cardume.errors import DataError, InputError
 from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
 from cardume.missions.opening import open_mission
+from cardume.missions.results import choose_destination
 from cardume.report.tuning.figure import draw_tuning
 from cardume.report.tuning.words import tuning_table, tuning_words
-from cardume.studies.tuning.keeping import keep_tuning, read_tuning, tuning_destination
-from cardume.studies.tuning.knobs import make_knobs
+from cardume.studies.run_table import RunTable
+from cardume.studies.tuning import trying
+from cardume.studies.tuning.evidence import Evidence, weigh
+from cardume.studies.tuning.keeping import keep_tuning
+from cardume.studies.tuning.knobs import make_knobs, with_values
+from cardume.studies.tuning.resuming import read_tuning
 from cardume.studies.tuning.searching import Goal, Try, best_of, cost, front_of
 from cardume.studies.tuning.tune import Tuning
 from studies.missions import LINE, NOISY
@@ -30,6 +37,11 @@ STILL = "current=none"
 
 def read(text: str, *overrides: str) -> Mission:
     return parse_mission(text, catalog(), overrides)
+
+
+def keep(found: Tuning, directory: Path, draw: Callable[[Path], None] | None = None) -> tuple[Path, dict[str, Any]]:
+    destination = choose_destination("x", directory, read_tuning)
+    return keep_tuning(destination, "x", found, words=["so"], version="1", draw=draw)
 
 
 @pytest.fixture(scope="module")
@@ -65,9 +77,7 @@ def test_the_best_of_a_dense_sweep_is_found() -> None:
 
 def test_it_flies_with_what_was_found_in_the_file(placed: Tuning, tmp_path: Path) -> None:
     drawn: list[Path] = []
-    where, told = keep_tuning(
-        tuning_destination("x", tmp_path / "out"), "x", placed, words=["so"], version="1", draw=drawn.append
-    )
+    where, told = keep(placed, tmp_path / "out", draw=drawn.append)
     again = open_mission(where / "mission.yaml")
     belief = again.vehicles[0].initial_estimate
     assert belief is not None
@@ -168,3 +178,182 @@ def test_what_cannot_be_tuned(given: dict[str, object], complaint: str) -> None:
     asked: dict[str, object] = {"metrics": ["energy"], "runs": 2, "evaluations": 10} | given
     with pytest.raises(InputError, match=complaint):
         cardume.tune(read(LINE), ["guidance.lookahead"], **asked)  # type: ignore[arg-type]
+
+
+ONE_KNOB = ["guidance.lookahead=1..10"]
+HOW: dict[str, Any] = {"evaluations": 10, "runs": 2}
+
+
+def tune_noisy(**how: Any) -> Tuning:
+    return cardume.tune(read(NOISY, "duration=15 s"), ONE_KNOB, ["cross_track_iae"], **HOW | how)
+
+
+class After:
+    """Asks to stop when a stage has come so far."""
+
+    def __init__(self, stage: str, done: int) -> None:
+        self.stage, self.done, self.is_reached = stage, done, False
+
+    def progress(self, stage: str, done: int, total: int) -> None:
+        self.is_reached |= stage == self.stage and done >= self.done
+
+    def should_stop(self) -> bool:
+        return self.is_reached
+
+    @property
+    def how(self) -> dict[str, Any]:
+        return {"progress": self.progress, "should_stop": self.should_stop}
+
+
+def test_a_stop_during_the_proof_keeps_the_best() -> None:
+    found = tune_noisy(**After("compare", 1).how)
+    assert found.is_interrupted
+    assert len(found.tries) == len(tune_noisy().tries)
+    assert found.recommended.vehicles[0].guidance.law.parameters["lookahead"] == found.best.values[0]
+    assert tuning_words(found)[0].startswith(f"Interrupted after {len(found.tries)} tries")
+
+
+def test_a_tuning_that_continues_ends_as_if_it_had_never_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = tune_noisy()
+    cut = tune_noisy(**After("tune", 6).how)
+    assert (len(cut.tries), cut.is_interrupted) == (6, True)
+    directory, _ = keep(cut, tmp_path / "it")
+    flown: list[Any] = []
+    monkeypatch.setattr(trying, "with_values", lambda *given: flown.append(given[2]) or with_values(*given))
+    again = tune_noisy(resume=directory)
+    assert again.tries == whole.tries
+    assert again.best == whole.best
+    assert again.evidence is not None
+    assert whole.evidence is not None
+    assert again.evidence.differences == whole.evidence.differences
+    assert again.recommended == whole.recommended
+    assert (
+        len(flown) == 1 + (len(whole.tries) - 6) + 2
+    )  # the start, which says whether runs differ; what is left; the proof
+    assert keep(again, directory)[1] == keep(whole, tmp_path / "whole")[1]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"runs": 3}, "has 2 for --runs, and 3 is given"),
+        ({"seed": 5}, "for --seed, and 5 is given"),
+        ({"evaluations": 11}, "has 10 for --evaluations"),
+        ({"overrides": ["current.speed=0.2 m/s"]}, "is of another mission"),
+    ],
+)
+def test_another_tuning_is_not_continued(tmp_path: Path, change: dict[str, Any], said: str) -> None:
+    directory, _ = keep(tune_noisy(**After("tune", 2).how), tmp_path / "it")
+    with pytest.raises(InputError, match=said):
+        tune_noisy(resume=directory, **change)
+
+
+def test_a_damaged_tuning_is_told(tmp_path: Path) -> None:
+    directory, _ = keep(tune_noisy(**After("tune", 2).how), tmp_path / "it")
+    table = (directory / "tries.csv").read_text()
+    (directory / "tries.csv").write_text(table.replace("\n1,", "\n1,x", 1))
+    with pytest.raises(DataError, match=r"tries.csv is damaged .*tune again"):
+        tune_noisy(resume=directory)
+    (directory / "tries.csv").unlink()
+    with pytest.raises(DataError, match=r"tries.csv cannot be read"):
+        tune_noisy(resume=directory)
+    with pytest.raises(DataError, match="give the directory of a tuning"):
+        tune_noisy(resume=tmp_path)
+
+
+def test_one_run_of_a_try_does_not_hide_that_runs_differ() -> None:
+    found = tune_noisy(runs=1)
+    assert (found.is_random, found.runs) == (True, 1)
+    assert found.evidence is not None
+    assert len(found.evidence.start) == 100
+    still = cardume.tune(read(LINE, "duration=15 s"), ONE_KNOB, ["cross_track_iae"], runs=1, evaluations=10)
+    assert not still.is_random
+
+
+def test_seeds_beyond_the_largest_are_refused() -> None:
+    for seed in (2**63 - 1, 2**63 - 1_000_000, -1):
+        with pytest.raises(InputError, match=f"--seed {seed}: the search and its proof"):
+            tune_noisy(seed=seed)
+
+
+def table_of(numbers: np.ndarray, met: np.ndarray | None = None) -> RunTable:
+    """Runs with these numbers of a metric or two."""
+    columns, nothing = np.atleast_2d(numbers), np.full(np.shape(numbers)[-1], math.nan)
+    names = ["fleet_cross_track_iae", "fleet_yaw_effort"][: len(columns)]
+    is_met = np.ones((len(nothing), 0), bool) if met is None else met[:, None]
+    return RunTable(
+        seeds=np.arange(len(nothing)),
+        drawn={},
+        metrics=dict(zip(names, columns, strict=True)),
+        requirements=("energy <= 9 J",)[: is_met.shape[1]],
+        got=is_met.astype(float),
+        met=is_met,
+        failed_at=nothing,
+        failure=("",) * len(nothing),
+        violated_at=np.full(is_met.shape, math.nan),
+    )
+
+
+def weighed(start: RunTable, best: RunTable, metrics: int = 1, quantile: float | None = None) -> Evidence:
+    names = ["cross_track_iae", "yaw_effort"][:metrics]
+    return weigh(start, best, read(LINE), names, Goal((1.0,) * metrics, 0.95), quantile)
+
+
+CHANCE = np.random.default_rng(11)
+RUNS = CHANCE.normal(10.0, 1.0, 100)
+BETTER = RUNS - 0.5 + CHANCE.normal(0.0, 0.1, 100)
+
+
+def test_a_gain_is_real_where_no_metric_is_lost() -> None:
+    assert weighed(table_of(RUNS), table_of(BETTER)).is_better
+    assert not weighed(table_of(BETTER), table_of(RUNS)).is_better
+    both = weighed(table_of(np.array([RUNS, BETTER])), table_of(np.array([BETTER, RUNS])), 2)
+    assert (both.changes, both.is_better) == ((1, -1), False)
+    one = weighed(table_of(np.array([RUNS, RUNS])), table_of(np.array([BETTER, RUNS])), 2)
+    assert (one.changes, one.is_better) == ((1, 0), True)
+
+
+def test_answers_share_the_risk() -> None:
+    """One metric that is just clear by itself, with a chance of 4 %, is not among two."""
+    noise = np.random.default_rng(3).normal(size=100)
+    noise = (noise - noise.mean()) / noise.std(ddof=1)
+    slightly = RUNS + 0.1 * noise - 0.0206  # 2.06 standard errors
+    assert weighed(table_of(RUNS), table_of(slightly)).is_better
+    assert weighed(table_of(np.array([RUNS, RUNS])), table_of(np.array([slightly, RUNS])), 2).changes == (0, 0)
+
+
+def test_runs_without_numbers_are_not_left_out_of_the_proof() -> None:
+    """Pairs of which one has no number say nothing of the difference: that they are so many does."""
+    lost = np.where(np.arange(100) < 20, math.nan, BETTER)
+    assert not weighed(table_of(RUNS), table_of(lost)).is_better
+    assert weighed(table_of(lost), table_of(RUNS)).is_better
+
+
+def test_what_is_required_comes_first_in_the_proof() -> None:
+    share = lambda count: np.arange(100) < count  # noqa: E731
+    start = table_of(RUNS, share(70))
+    assert weighed(start, table_of(RUNS + 1.0, share(99))).is_better  # a worse metric, but as required
+    assert not weighed(table_of(RUNS, share(96)), table_of(BETTER, share(94))).is_better  # no longer as required
+    assert not weighed(table_of(RUNS, share(94)), table_of(RUNS, share(96))).is_better  # two runs more are chance
+    assert weighed(table_of(RUNS, share(100)), table_of(BETTER, share(96))).is_better  # as required all the same
+
+
+def test_a_quantile_is_proved_by_the_quantile() -> None:
+    """Nine tenths gain a little, and the last tenth loses much: the mean is better, the 95 % quantile worse."""
+    spread = np.sort(RUNS)
+    mixed = np.where(np.arange(100) < 88, spread - 0.5, spread + 2.0)
+    assert weighed(table_of(spread), table_of(mixed)).is_better
+    by_quantile = weighed(table_of(spread), table_of(mixed), quantile=0.95)
+    assert (by_quantile.changes, by_quantile.is_better) == ((-1,), False)
+    (difference,) = by_quantile.differences
+    assert difference.mean == pytest.approx(2.0)
+    assert 0.0 < difference.low <= 2.0 <= difference.high
+
+
+def test_of_a_front_one_that_loses_nothing_is_recommended() -> None:
+    start = Try((0.0,), (2.0, 2.0), 1.0, 1.0)
+    compromise, better = Try((1.0,), (1.0, 2.1), 1.0, 1.0), Try((2.0,), (1.9, 1.9), 1.0, 1.0)
+    assert best_of([start, compromise, better], Goal((1.0, 1.0), 0.9)) == better
+    assert best_of([start, compromise], Goal((1.0, 1.0), 0.9)) in (start, compromise)

@@ -10,18 +10,27 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from cardume.cli.drawing import Drawing, own_up
-from cardume.cli.options import allow_code_option, json_option, quiet_option, set_option
+from cardume.cli.options import (
+    Asked,
+    allow_code_option,
+    folder_name,
+    json_option,
+    no_figures_option,
+    output_option,
+    quiet_option,
+    set_option,
+    take_asked,
+)
 from cardume.cli.progress import Progress
 from cardume.cli.stopping import Stopping
 from cardume.cli.text import filled
 from cardume.cli.version import version
+from cardume.studies.constants import DEFAULT_COMPARED, MOST_COMPARED
 
 if TYPE_CHECKING:
     from cardume.studies.comparing import Comparison
 
 DONE, FAILED = 0, 3
-DEFAULT_RUNS = 20
-MOST_RUNS = 100_000
 
 
 class Request(NamedTuple):
@@ -32,17 +41,7 @@ class Request(NamedTuple):
     runs: int | None
     seeds: tuple[int, ...] | None
     metrics: tuple[str, ...]
-    output: Path | None
-    overrides: tuple[str, ...]
-    no_figures: bool
-    allow_code: tuple[Path, ...]
-    quiet: bool
-    as_json: bool
-
-    @property
-    def is_talkative(self) -> bool:
-        """Whether a person reads along."""
-        return not (self.quiet or self.as_json)
+    asked: Asked
 
 
 def _read_seeds(_ctx: click.Context, _parameter: click.Parameter, given: str | None) -> tuple[int, ...] | None:
@@ -57,8 +56,8 @@ def _read_seeds(_ctx: click.Context, _parameter: click.Parameter, given: str | N
         first, last = int(ends[1]), int(ends[2] or ends[1])
         if last < first:
             raise click.BadParameter(f"{part.strip()!r} counts backwards; write {last}-{first}")
-        if last - first >= MOST_RUNS:
-            raise click.BadParameter(f"{part.strip()!r} are more than {MOST_RUNS} seeds; give fewer")
+        if last - first >= MOST_COMPARED:
+            raise click.BadParameter(f"{part.strip()!r} are more than {MOST_COMPARED} seeds; give fewer")
         seeds += range(first, last + 1)
     return tuple(seeds)
 
@@ -72,17 +71,18 @@ def _read_seeds(_ctx: click.Context, _parameter: click.Parameter, given: str | N
     help="A key and the values it takes, as guidance.law=line_of_sight,arcsine; may be repeated.",
 )
 @click.option(
-    "--runs", type=click.IntRange(1, MOST_RUNS), metavar="N", help=f"With seeds 1 to N; {DEFAULT_RUNS} if not given."
+    "--runs",
+    type=click.IntRange(1, MOST_COMPARED),
+    metavar="N",
+    help=f"With seeds 1 to N; {DEFAULT_COMPARED} if not given.",
 )
 @click.option("--seeds", callback=_read_seeds, metavar="A-B", help="With these seeds instead, as 1-20 or 3,7,9.")
 @click.option(
     "--for", "metrics", multiple=True, metavar="METRIC", help="What to compare, as cross_track_rms; may be repeated."
 )
-@click.option(
-    "-o", "output", type=click.Path(path_type=Path), metavar="DIR", help="Where to; else runs/NAME-compared/001, ..."
-)
+@output_option("runs/NAME-compared")
 @set_option
-@click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@no_figures_option
 @allow_code_option
 @quiet_option
 @json_option
@@ -96,23 +96,23 @@ def compare(**given: Any) -> int:
     Exit code 0: compared; 2: bad input; 3: an arm failed in every mission, or results could not be
     written; 130 or 143: interrupted, and what all arms had flown is compared and kept.
     """
-    request = Request(**given)
+    request = Request(asked=take_asked(given), **given)
     with Stopping() as stopping:
         return _compare(request, stopping)
 
 
 def _compare(request: Request, stopping: Stopping) -> int:
-    from cardume.missions.results import ResultsError
+    from cardume.missions.results import ResultsError, choose_destination
     from cardume.report.comparison_words import conclusions
     from cardume.studies.arms import parse_vary
     from cardume.studies.comparing import compare as fly_and_compare
-    from cardume.studies.keeping import comparison_destination, keep_comparison
+    from cardume.studies.keeping import keep_comparison, read_comparison
 
     if request.runs is not None and request.seeds is not None:
         raise click.UsageError("--runs and --seeds both say which seeds to fly; give one of them.")
-    name = _name(request.missions)
-    destination = comparison_destination(name, request.output)
-    with Progress(request.is_talkative) as progress:
+    asked, name = request.asked, folder_name(request.missions[0], "compared")
+    destination = choose_destination(name, asked.output, read_comparison)
+    with Progress(asked.is_talkative) as progress:
 
         def note(stage: str, done: int, total: int) -> None:
             if stage == "compare" and done:
@@ -122,11 +122,11 @@ def _compare(request: Request, stopping: Stopping) -> int:
         comparison = fly_and_compare(
             list(request.missions),
             parse_vary(request.vary),
-            runs=request.runs or DEFAULT_RUNS,
+            runs=request.runs or DEFAULT_COMPARED,
             seeds=request.seeds,
             metrics=request.metrics,
-            overrides=request.overrides,
-            allow_code=request.allow_code,
+            overrides=asked.overrides,
+            allow_code=asked.allow_code,
             progress=note,
             should_stop=stopping.is_asked,
         )
@@ -136,14 +136,14 @@ def _compare(request: Request, stopping: Stopping) -> int:
 
         save_comparison(comparison, folder)
 
-    drawing = Drawing(draw, is_wanted=not (request.no_figures or stopping.is_asked()))
+    drawing = Drawing(draw, is_wanted=not (asked.no_figures or stopping.is_asked()))
     words = conclusions(comparison)
     try:
         directory, summary = keep_comparison(
             destination, name, comparison, words=words, version=version(), draw=drawing
         )
     except ResultsError:
-        if request.is_talkative:
+        if asked.is_talkative:
             _say_numbers(request, comparison, words)
         raise
     _report(request, comparison, words, directory, summary)
@@ -163,11 +163,11 @@ def _exit_code(comparison: "Comparison", drawing: Drawing, stopping: Stopping) -
 def _report(
     request: Request, comparison: "Comparison", words: Sequence[str], directory: Path, summary: dict[str, Any]
 ) -> None:
-    if request.as_json:
+    if request.asked.as_json:
         import json
 
         click.echo(json.dumps(summary, indent=2))
-    elif not request.quiet:
+    elif not request.asked.quiet:
         _say_numbers(request, comparison, words)
         click.echo(f"\nWritten to {directory}\n{filled(', '.join(summary['files']), indent='  ')}")
         _say_next(request, comparison)
@@ -216,28 +216,20 @@ def next_steps(request: Request, comparison: "Comparison") -> list[tuple[str, st
     same = list(request.missions)
     for text in request.vary:
         same += ["--vary", text]
-    for text in request.overrides:
-        same += ["--set", text]
     for text in request.metrics:
         same += ["--for", text]
-    allowed = [word for folder in request.allow_code for word in ("--allow-code", str(folder))]
-    if count == 1 or (is_random and len(real) < len(comparison.arms) - 1 and count < MOST_RUNS // 4):
-        more = DEFAULT_RUNS if count == 1 else 4 * count
-        steps.append((["compare", *same, *allowed, "--runs", str(more)], "more seeds, smaller differences"))
+    same += request.asked.same
+    if count == 1 or (is_random and len(real) < len(comparison.arms) - 1 and count < MOST_COMPARED // 4):
+        more = DEFAULT_COMPARED if count == 1 else 4 * count
+        steps.append((["compare", *same, "--runs", str(more)], "more seeds, smaller differences"))
     arm = comparison.arms[real[0] if real else -1]
     alone = ["run", arm.given, "--seed", str(comparison.seeds[0])]
-    for text in (*request.overrides, *arm.changes):
+    for text in (*request.asked.overrides, *arm.changes):
         alone += ["--set", text]
     if arm.is_runnable:
-        steps.append(([*alone, *allowed], f"one mission of {arm.label}, with log and figures"))
+        steps.append(([*alone, *request.asked.allowed], f"one mission of {arm.label}, with log and figures"))
     return [(f"cardume {shlex.join(words)}", why) for words, why in steps]
 
 
 def _is_any_real(comparison: "Comparison", place: int) -> bool:
     return any(comparison.is_real[metric][place - 1] for metric in comparison.metrics)
-
-
-def _name(missions: Sequence[str]) -> str:
-    """What a comparison is called: after its first mission."""
-    stem = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(missions[0]).name.split(".")[0]).strip("-")[:64]
-    return f"{stem or 'mission'}-compared"

@@ -1,16 +1,19 @@
 """What several commands take, and how a mission is found."""
 
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
+
+from cardume.studies.constants import LARGEST_SEED
 
 if TYPE_CHECKING:
     from cardume.missions.mission import Mission
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
-LARGEST_SEED = 2**63 - 1
+LONGEST_NAME = 64
 
 mission_argument: Decorator = click.argument("mission")
 seed_option: Decorator = click.option(
@@ -33,10 +36,70 @@ allow_code_option: Decorator = click.option(
     metavar="DIR",
     help="Folder from which the mission may import laws of yours.",
 )
+no_figures_option: Decorator = click.option("--no-figures", is_flag=True, help="Draw nothing.")
 quiet_option: Decorator = click.option("-q", "--quiet", is_flag=True, help="Say nothing but errors.")
 json_option: Decorator = click.option(
     "--json", "as_json", is_flag=True, help="Print JSON, and nothing else, on stdout."
 )
+
+
+class Asked(NamedTuple):
+    """What the user typed of what several commands take."""
+
+    output: Path | None = None
+    seed: int | None = None
+    overrides: tuple[str, ...] = ()
+    allow_code: tuple[Path, ...] = ()
+    no_figures: bool = False
+    quiet: bool = False
+    as_json: bool = False
+
+    @property
+    def is_talkative(self) -> bool:
+        """Whether a person reads along."""
+        return not (self.quiet or self.as_json)
+
+    @property
+    def same(self) -> list[str]:
+        """The options without which it would be another mission, or could not be read, as they are typed."""
+        words = [word for change in self.overrides for word in ("--set", change)]
+        words += [] if self.seed is None else ["--seed", str(self.seed)]
+        return words + self.allowed
+
+    @property
+    def allowed(self) -> list[str]:
+        """The options without which a mission could not be read, as they are typed."""
+        return [word for folder in self.allow_code for word in ("--allow-code", str(folder))]
+
+
+def take_asked(given: dict[str, Any]) -> Asked:
+    """What several commands take out of what was given to one.
+
+    Args:
+        given: by name; what is taken leaves it.
+    """
+    return Asked(**{name: given.pop(name) for name in Asked._fields if name in given})
+
+
+def output_option(numbered: str) -> Decorator:
+    """Where results go.
+
+    Args:
+        numbered: where to if it is not given.
+    """
+    words = f"Where to; else {numbered}/001, 002, ..."
+    return click.option("-o", "output", type=click.Path(path_type=Path), metavar="DIR", help=words)
+
+
+def folder_name(mission: str, what: str) -> str:
+    """The name of the folder for what is made of a mission.
+
+    Args:
+        mission: as the user names it.
+        what: is made of it.
+    """
+    stem = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(mission).name.split(".")[0]).strip("-")[:LONGEST_NAME]
+    return f"{stem or 'mission'}-{what}"
 
 
 def find_mission(

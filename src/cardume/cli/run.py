@@ -11,13 +11,17 @@ import click
 
 from cardume.cli.drawing import own_up
 from cardume.cli.options import (
+    Asked,
     allow_code_option,
     find_mission,
     json_option,
     mission_argument,
+    no_figures_option,
+    output_option,
     quiet_option,
     seed_option,
     set_option,
+    take_asked,
     warn_of_path_file,
 )
 from cardume.cli.progress import Progress
@@ -36,28 +40,15 @@ class Request(NamedTuple):
     """What the user typed."""
 
     mission: str
-    output: Path | None
-    seed: int | None
-    overrides: tuple[str, ...]
-    no_figures: bool
-    allow_code: tuple[Path, ...]
-    quiet: bool
-    as_json: bool
-
-    @property
-    def is_talkative(self) -> bool:
-        """Whether a person reads along."""
-        return not (self.quiet or self.as_json)
+    asked: Asked
 
 
 @click.command(short_help="Fly a mission, and keep what comes out.")
 @mission_argument
-@click.option(
-    "-o", "output", type=click.Path(path_type=Path), metavar="DIR", help="Where to; else runs/NAME/001, 002, ..."
-)
+@output_option("runs/NAME")
 @seed_option
 @set_option
-@click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@no_figures_option
 @allow_code_option
 @quiet_option
 @json_option
@@ -70,7 +61,7 @@ def run(**given: Any) -> int:
     Exit code 0: done, and what the mission requires is met; 1: requirements missed;
     2: bad input; 3: failed while flying; 130 or 143: interrupted, what was flown is kept.
     """
-    request = Request(**given)
+    request = Request(asked=take_asked(given), **given)
     with Stopping() as stopping:
         return _run(request, stopping)
 
@@ -79,29 +70,30 @@ def _run(request: Request, stopping: Stopping) -> int:
     from cardume.missions.flying import fly_mission
     from cardume.missions.results import ResultsError, choose_destination, write_results
 
-    mission = find_mission(request.mission, request.overrides, request.seed, request.allow_code)
-    destination = choose_destination(mission.name, request.output)
-    if request.is_talkative:
+    asked = request.asked
+    mission = find_mission(request.mission, asked.overrides, asked.seed, asked.allow_code)
+    destination = choose_destination(mission.name, asked.output)
+    if asked.is_talkative:
         warn_of_path_file(mission)
-    with Progress(request.is_talkative) as progress:
+    with Progress(asked.is_talkative) as progress:
 
         def note(stage: str, done: int, total: int) -> None:
             if stage == "fly":
                 stopping.begin_flight()
             progress(stage, done, total)
 
-        flight = fly_mission(mission, progress=note, should_stop=stopping.is_asked, allow_code=request.allow_code)
+        flight = fly_mission(mission, progress=note, should_stop=stopping.is_asked, allow_code=asked.allow_code)
     drawing = Drawing(mission, flight, stopping)
     try:
         directory, summary = write_results(
-            destination, mission, flight, version=version(), draw=None if request.no_figures else drawing
+            destination, mission, flight, version=version(), draw=None if asked.no_figures else drawing
         )
     except (ResultsError, Stopped):
-        if request.is_talkative:
+        if asked.is_talkative:
             _say_numbers(mission, flight)
         raise
     _report(request, mission, flight, directory, summary)
-    if drawing.lacking and request.is_talkative:
+    if drawing.lacking and asked.is_talkative:
         click.echo(f"\nnote: {drawing.lacking}", err=True)
     return _exit_code(flight, summary, drawing, stopping)
 
@@ -146,9 +138,9 @@ def _exit_code(flight: "Flight", summary: dict[str, Any], drawing: Drawing, stop
 def _report(request: Request, mission: "Mission", flight: "Flight", directory: Path, summary: dict[str, Any]) -> None:
     from cardume.missions.summary import to_json
 
-    if request.as_json:
+    if request.asked.as_json:
         click.echo(to_json(summary), nl=False)
-    elif not request.quiet:
+    elif not request.asked.quiet:
         _say_numbers(mission, flight)
         _say_files(directory, summary["files"])
         _say_next(request, mission, flight)
@@ -200,11 +192,7 @@ def next_steps(request: Request, mission: "Mission", flight: "Flight") -> list[t
         mission: as flown.
         flight: what came out.
     """
-    same = [request.mission]
-    for text in request.overrides:
-        same += ["--set", text]
-    for folder in request.allow_code:
-        same += ["--allow-code", str(folder)]
+    same = [request.mission, *request.asked._replace(seed=None).same]
     steps = [(["check", *same], "what theory says of it")]
     if flight.reason == "completed":
         steps.append((["run", *same, "--seed", str(flight.seed + 1)], "the same with other noise"))

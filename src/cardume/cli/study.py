@@ -2,7 +2,7 @@
 
 import shlex
 import sys
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -10,16 +10,22 @@ import click
 
 from cardume.cli.drawing import own_up
 from cardume.cli.options import (
+    Asked,
     allow_code_option,
+    folder_name,
     json_option,
     mission_argument,
+    no_figures_option,
+    output_option,
     quiet_option,
     seed_option,
     set_option,
+    take_asked,
 )
 from cardume.cli.progress import Progress, time_words
 from cardume.cli.stopping import Stopping
 from cardume.cli.text import filled
+from cardume.studies.constants import FAILED, NOT_FLOWN, REFUSED, SAMPLINGS
 
 if TYPE_CHECKING:
     import xarray
@@ -27,9 +33,7 @@ if TYPE_CHECKING:
     from cardume.studies.answers.results import Results
     from cardume.studies.forecast import Forecast
 
-DONE, FAILED = 0, 3
-RUNS = Path("runs")
-SAMPLINGS = ("monte_carlo", "latin_hypercube", "sobol")
+DONE, ALL_FAILED = 0, 3
 
 
 class Request(NamedTuple):
@@ -37,30 +41,17 @@ class Request(NamedTuple):
 
     mission: str
     runs: int | None
-    output: Path | None
     sampling: str | None
     workers: int | None
     scheduler: str | None
     resume: bool
-    seed: int | None
-    overrides: tuple[str, ...]
-    allow_code: tuple[Path, ...]
-    no_figures: bool
-    quiet: bool
-    as_json: bool
-
-    @property
-    def is_talkative(self) -> bool:
-        """Whether a person reads along."""
-        return not (self.quiet or self.as_json)
+    asked: Asked
 
 
 @click.command(short_help="Fly a mission hundreds of times, values drawn and swept.")
 @mission_argument
 @click.option("--runs", type=int, metavar="N", help="How often each case is flown; its seeds count from the mission's.")
-@click.option(
-    "-o", "output", type=click.Path(path_type=Path), metavar="DIR", help="Where to; else runs/NAME-study/001, ..."
-)
+@output_option("runs/NAME-study")
 @click.option(
     "--sampling",
     type=click.Choice(SAMPLINGS),
@@ -71,7 +62,7 @@ class Request(NamedTuple):
 @click.option("--resume", is_flag=True, help="Continue a study that was interrupted, killed or damaged.")
 @seed_option
 @set_option
-@click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@no_figures_option
 @allow_code_option
 @quiet_option
 @json_option
@@ -86,74 +77,60 @@ def study(**given: Any) -> int:
     Exit code 0: flown; 2: bad input; 3: every mission failed, or results could not be written;
     130 or 143: interrupted, and --resume continues, as it does after a crash.
     """
-    request = Request(**given)
+    request = Request(asked=take_asked(given), **given)
     with Stopping() as stopping:
         return _study(request, stopping)
 
 
 def _study(request: Request, stopping: Stopping) -> int:
+    with _place(request) as directory:
+        runs = _fly(request, directory, stopping)
+    return _end(request, directory, runs, stopping)
+
+
+def _fly(request: Request, directory: Path, stopping: Stopping) -> "xarray.Dataset":
     from cardume.studies.studying import study as fly_study
 
-    directory = _place(request)
-    with Progress(request.is_talkative) as progress:
+    asked = request.asked
+    with Progress(asked.is_talkative) as progress:
 
         def announce(forecast: "Forecast") -> None:
             stopping.begin_flight()  # from now on there is something to keep
             progress.pause()
-            if request.is_talkative:
+            if asked.is_talkative:
                 _say_forecast(forecast)
 
-        try:
-            runs = fly_study(
-                request.mission,
-                request.runs,
-                directory=directory,
-                sampling=request.sampling,
-                seed=request.seed,
-                overrides=request.overrides,
-                allow_code=request.allow_code,
-                workers=request.workers,
-                scheduler=request.scheduler,
-                resume=request.resume,
-                command=shlex.join(["cardume", *sys.argv[1:]]),
-                announce=announce,
-                progress=progress,
-                should_stop=stopping.is_asked,
-            )
-        except BaseException:
-            if request.output is None and not request.resume:
-                with suppress(OSError):  # not if anything is in it
-                    directory.rmdir()
-                    directory.parent.rmdir()
-            raise
-    return _end(request, directory, runs, stopping)
+        return fly_study(
+            request.mission,
+            request.runs,
+            directory=directory,
+            sampling=request.sampling,
+            seed=asked.seed,
+            overrides=asked.overrides,
+            allow_code=asked.allow_code,
+            workers=request.workers,
+            scheduler=request.scheduler,
+            resume=request.resume,
+            command=shlex.join(["cardume", *sys.argv[1:]]),
+            announce=announce,
+            progress=progress,
+            should_stop=stopping.is_asked,
+        )
 
 
-def _place(request: Request) -> Path:
+def _place(request: Request) -> AbstractContextManager[Path]:
     """Where the study is, or will be; a place that was not given is taken at once, so that nobody else takes it."""
     from cardume.errors import InputError
+    from cardume.missions.results import RUNS, last_number, numbered_directory
 
-    if request.output is not None:
-        return request.output
-    parent = RUNS / f"{_name(request.mission)}-study"
-    there = sorted((path for path in parent.glob("*") if path.name.isdigit()), key=lambda path: int(path.name))
-    if request.resume:
-        if not there:
-            raise InputError(f"there is no study in {parent} to continue; say where it is with -o DIR")
-        return there[-1]
-    number = int(there[-1].name) + 1 if there else 1
-    while True:
-        try:
-            (parent / f"{number:03d}").mkdir(parents=True)
-            return parent / f"{number:03d}"
-        except FileExistsError:
-            number += 1
-
-
-def _name(mission: str) -> str:
-    stem = Path(mission).name.split(".")[0]
-    safe = "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in stem).strip("-")
-    return safe or "mission"
+    if request.asked.output is not None:
+        return nullcontext(request.asked.output)
+    parent = RUNS / folder_name(request.mission, "study")
+    if not request.resume:
+        return numbered_directory(parent)
+    if not (number := last_number(parent)):
+        raise InputError(f"there is no study in {parent} to continue; say where it is with -o DIR")
+    return nullcontext(parent / f"{number:03d}")
 
 
 def _say_forecast(forecast: "Forecast") -> None:
@@ -177,31 +154,23 @@ def _say_forecast(forecast: "Forecast") -> None:
 
 def _end(request: Request, directory: Path, runs: "xarray.Dataset", stopping: Stopping) -> int:
     status = runs["status"].to_numpy()
-    left, failed = int((status == 0).sum()), int((status > 1).sum())
+    left, failed, refused = (int((status == kind).sum()) for kind in (NOT_FLOWN, FAILED, REFUSED))
     if left:
-        again = shlex.join(["cardume", "study", request.mission, "--resume", "-o", str(directory), *_same(request)])
+        again = shlex.join(["cardume", "study", request.mission, "--resume", "-o", str(directory), *request.asked.same])
         click.echo(
             f"interrupted; {status.size - left:,} of {status.size:,} missions are kept in {directory}; continue with\n"
             f"  {again}",
             err=True,
         )
         return stopping.exit_code or DONE
-    return _report(request, directory, runs, failed, stopping)
+    code = _report(request, directory, runs, stopping)
+    if failed or refused:
+        said = [f"{failed:,} failed in flight"] * bool(failed) + [f"{refused:,} could not be flown"] * bool(refused)
+        click.echo(f"of {status.size:,} missions {', '.join(said)}; `failure` in the data set says why", err=True)
+    return ALL_FAILED if failed + refused == status.size else code
 
 
-def _same(request: Request) -> list[str]:
-    """The options without which it would be another mission, or could not be read."""
-    words = []
-    for change in request.overrides:
-        words += ["--set", change]
-    if request.seed is not None:
-        words += ["--seed", str(request.seed)]
-    for folder in request.allow_code:
-        words += ["--allow-code", str(folder)]
-    return words
-
-
-def _report(request: Request, directory: Path, runs: "xarray.Dataset", failed: int, stopping: Stopping) -> int:
+def _report(request: Request, directory: Path, runs: "xarray.Dataset", stopping: Stopping) -> int:
     from cardume.cli.study_answers import Drawn, draw_answers
     from cardume.report.study.words import study_words
     from cardume.studies.answers.results import Results
@@ -210,26 +179,20 @@ def _report(request: Request, directory: Path, runs: "xarray.Dataset", failed: i
     results, drawn = Results(runs), Drawn(())
     summary = summarize_study(runs) | {"conclusions": study_words(results)}
     write_summary(directory, summary)
-    if request.is_talkative:
+    if request.asked.is_talkative:
         _say_numbers(request, results)
-    if not (request.no_figures or stopping.is_asked()):
-        drawn = draw_answers(directory, results, request.allow_code, stopping.is_asked)
-    if request.as_json:
+    if not (request.asked.no_figures or stopping.is_asked()):
+        drawn = draw_answers(directory, results, request.asked.allow_code, stopping.is_asked)
+    if request.asked.as_json:
         import json
 
         click.echo(json.dumps(summary, indent=2, allow_nan=False))
-    elif not request.quiet:
+    elif not request.asked.quiet:
         files = sorted(path.name + "/" * path.is_dir() for path in directory.iterdir() if path.name[0] != ".")
         click.echo(f"\nWritten to {directory}\n{filled(', '.join(files), indent='  ')}")
         _say_next(request, directory, results)
         if drawn.lacking:
             click.echo(f"\nnote: {drawn.lacking}", err=True)
-    if failed:
-        click.echo(
-            f"{failed:,} of {runs['status'].size:,} missions failed; `failure` in the data set says why", err=True
-        )
-    if failed == runs["status"].size:
-        return FAILED
     return own_up(drawn.problem, "figures or report") if drawn.problem is not None else DONE
 
 
@@ -247,7 +210,7 @@ def _say_next(request: Request, directory: Path, results: "Results") -> None:
     from cardume.report.study.figures import figures_that_matter
 
     python = f"import cardume; print(cardume.open_study({str(directory)!r}))"
-    more = ["cardume", "study", request.mission, "--runs", str(4 * len(results.seeds)), *_same(request)]
+    more = ["cardume", "study", request.mission, "--runs", str(4 * len(results.seeds)), *request.asked.same]
     figure = next(iter(figures_that_matter(results)), "worst")
     paper = ["cardume", "report", str(directory), "--figure", figure, "--format", "pdf", "--width", "88mm"]
     click.echo("\nNext")

@@ -1,6 +1,5 @@
 """`cardume tune`: numbers of a mission tuned over all that it draws, and proved on fresh seeds."""
 
-import re
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -9,23 +8,28 @@ import click
 
 from cardume.cli.drawing import Drawing, own_up
 from cardume.cli.options import (
+    Asked,
     allow_code_option,
+    folder_name,
     json_option,
     mission_argument,
+    no_figures_option,
+    output_option,
     quiet_option,
     seed_option,
     set_option,
+    take_asked,
 )
 from cardume.cli.progress import Progress
 from cardume.cli.stopping import Stopping
 from cardume.cli.text import filled
 from cardume.cli.version import version
+from cardume.studies.constants import DEFAULT_MET, DEFAULT_TRIES, DEFAULT_TUNED
 
 if TYPE_CHECKING:
     from cardume.studies.tuning.tune import Tuning
 
 DONE = 0
-DEFAULT_RUNS, DEFAULT_TRIES = 24, 60
 
 
 class Request(NamedTuple):
@@ -38,18 +42,8 @@ class Request(NamedTuple):
     evaluations: int
     quantile: float | None
     met: float
-    seed: int | None
-    output: Path | None
-    overrides: tuple[str, ...]
-    no_figures: bool
-    allow_code: tuple[Path, ...]
-    quiet: bool
-    as_json: bool
-
-    @property
-    def is_talkative(self) -> bool:
-        """Whether a person reads along."""
-        return not (self.quiet or self.as_json)
+    resume: Path | None
+    asked: Asked
 
 
 @click.command(short_help="Tune gains over all that a mission draws.")
@@ -69,7 +63,9 @@ class Request(NamedTuple):
     metavar="KEY[=A..B]",
     help="A number to change, and from where to where, as guidance.lookahead=2..15; may be repeated.",
 )
-@click.option("--runs", type=int, default=DEFAULT_RUNS, metavar="N", help=f"Of each try; {DEFAULT_RUNS} if not given.")
+@click.option(
+    "--runs", type=int, default=DEFAULT_TUNED, metavar="N", help=f"Of each try; {DEFAULT_TUNED} if not given."
+)
 @click.option(
     "--evaluations", type=int, default=DEFAULT_TRIES, metavar="N", help=f"Tries in all; {DEFAULT_TRIES} if not given."
 )
@@ -77,16 +73,20 @@ class Request(NamedTuple):
 @click.option(
     "--met",
     type=float,
-    default=0.95,
+    default=DEFAULT_MET,
     metavar="SHARE",
-    help="Share of the runs in which all that the mission requires is to be met; 0.95 if not given.",
+    help=f"Share of the runs in which all that the mission requires is to be met; {DEFAULT_MET} if not given.",
 )
 @seed_option
+@output_option("runs/NAME-tuned")
 @click.option(
-    "-o", "output", type=click.Path(path_type=Path), metavar="DIR", help="Where to; else runs/NAME-tuned/001, ..."
+    "--resume",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Continue a tuning that was interrupted, with what is given as it was then.",
 )
 @set_option
-@click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@no_figures_option
 @allow_code_option
 @quiet_option
 @json_option
@@ -98,22 +98,23 @@ def tune(**given: Any) -> int:
 
     \b
     Exit code 0: done; 2: bad input; 3: results could not be written; 130 or 143: interrupted, and the
-    best so far is kept, unproved.
+    best so far is kept, unproved; --resume continues.
     """
-    request = Request(**given)
+    request = Request(asked=take_asked(given), **given)
     with Stopping() as stopping:
         return _tune(request, stopping)
 
 
 def _tune(request: Request, stopping: Stopping) -> int:
+    from cardume.missions.results import choose_destination
     from cardume.report.tuning.words import tuning_words
-    from cardume.studies.tuning.keeping import keep_tuning, tuning_destination
+    from cardume.studies.tuning.keeping import keep_tuning
+    from cardume.studies.tuning.resuming import read_tuning
     from cardume.studies.tuning.tune import tune as search
 
-    name = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(request.mission).name.split(".")[0]).strip("-")[:64]
-    name = f"{name or 'mission'}-tuned"
-    destination = tuning_destination(name, request.output)
-    with Progress(request.is_talkative) as progress:
+    asked, name = request.asked, folder_name(request.mission, "tuned")
+    destination = choose_destination(name, asked.output or request.resume, read_tuning)
+    with Progress(asked.is_talkative) as progress:
 
         def note(stage: str, done: int, total: int) -> None:
             if stage == "tune" and done:
@@ -128,9 +129,10 @@ def _tune(request: Request, stopping: Stopping) -> int:
             evaluations=request.evaluations,
             quantile=request.quantile,
             met=request.met,
-            seed=request.seed,
-            overrides=request.overrides,
-            allow_code=request.allow_code,
+            seed=asked.seed,
+            overrides=asked.overrides,
+            allow_code=asked.allow_code,
+            resume=request.resume,
             progress=note,
             should_stop=stopping.is_asked,
         )
@@ -140,22 +142,26 @@ def _tune(request: Request, stopping: Stopping) -> int:
 
         save_tuning(tuning, folder)
 
-    drawing = Drawing(draw, is_wanted=not (request.no_figures or stopping.is_asked()))
+    drawing = Drawing(draw, is_wanted=not (asked.no_figures or stopping.is_asked()))
     words = tuning_words(tuning)
     directory, summary = keep_tuning(destination, name, tuning, words=words, version=version(), draw=drawing)
     _report(request, tuning, words, directory, summary)
+    if tuning.is_interrupted:
+        again = shlex.join(["cardume", "tune", request.mission, *_same(request), "--resume", str(directory)])
+        click.echo(
+            f"interrupted; the best of {len(tuning.tries)} tries is in {directory}; continue with\n  {again}", err=True
+        )
     if stopping.is_asked():
-        click.echo(f"interrupted; the best of {len(tuning.tries)} tries is in {directory}", err=True)
         return stopping.exit_code
     return own_up(drawing.problem, "the figure") if drawing.problem is not None else DONE
 
 
 def _report(request: Request, tuning: "Tuning", words: list[str], directory: Path, summary: dict[str, Any]) -> None:
-    if request.as_json:
+    if request.asked.as_json:
         import json
 
         click.echo(json.dumps(summary, indent=2))
-    elif not request.quiet:
+    elif not request.asked.quiet:
         from cardume.report.tuning.words import tuning_table
 
         what = " and ".join(tuning.metrics)
@@ -168,11 +174,17 @@ def _report(request: Request, tuning: "Tuning", words: list[str], directory: Pat
         _say_next(request, tuning, directory)
 
 
+def _same(request: Request) -> list[str]:
+    """The options without which it would be another search."""
+    words = [word for metric in request.metrics for word in ("--for", metric)]
+    words += [word for text in request.vary for word in ("--vary", text)]
+    words += ["--runs", str(request.runs), "--evaluations", str(request.evaluations), "--met", str(request.met)]
+    words += [] if request.quantile is None else ["--quantile", str(request.quantile)]
+    return words + request.asked.same
+
+
 def _say_next(request: Request, tuning: "Tuning", directory: Path) -> None:
-    mission, allowed = (
-        str(directory / "mission.yaml"),
-        [w for f in request.allow_code for w in ("--allow-code", str(f))],
-    )
+    mission, allowed = str(directory / "mission.yaml"), request.asked.allowed
     steps = [(["run", mission, *allowed], "one mission with these values, with log and figures")]
     if tuning.is_random:
         steps.append((["study", mission, "--runs", "200", *allowed], "how often what is required is met"))

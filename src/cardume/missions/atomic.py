@@ -50,7 +50,7 @@ def new_directory(target: Path) -> Iterator[Path]:
     Raises:
         FileExistsError: something else took the target's name meanwhile.
     """
-    made = _make_parents(target.parent)
+    made = make_parents(target.parent)
     partial = _beside(target)
     try:
         partial.mkdir()
@@ -64,7 +64,7 @@ def new_directory(target: Path) -> Iterator[Path]:
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)
         for folder in made:
-            _remove_if_empty(folder)
+            remove_if_empty(folder)
         raise
 
 
@@ -120,14 +120,23 @@ def _reserve(path: Path, size: int) -> None:
             os.posix_fallocate(file.fileno(), 0, size)
 
 
-def _make_parents(folder: Path) -> list[Path]:
-    """Make a folder and its parents; return those that did not exist, innermost first."""
+def make_parents(folder: Path) -> list[Path]:
+    """Make a folder and its parents; return those that did not exist, innermost first.
+
+    Args:
+        folder: that is to be there.
+    """
     missing = [path for path in (folder, *folder.parents) if not path.exists()]
     for path in reversed(missing):
         path.mkdir(exist_ok=True)
     return missing
 
 
-def _remove_if_empty(folder: Path) -> None:
+def remove_if_empty(folder: Path) -> None:
+    """Remove a folder if nothing is in it.
+
+    Args:
+        folder: that may be there.
+    """
     with suppress(OSError):
         folder.rmdir()

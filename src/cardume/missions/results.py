@@ -8,13 +8,13 @@ DIR/figures/, DIR/report.html    what the caller draws
 
 import errno
 import os
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
 from cardume.errors import CardumeError, DataError, InputError
-from cardume.missions.atomic import new_directory, renewed_directory, write_file
+from cardume.missions.atomic import make_parents, new_directory, remove_if_empty, renewed_directory, write_file
 from cardume.missions.log import write_log
 from cardume.missions.mission import Mission
 from cardume.missions.summary import FILE_NAME, judge, read_summary, summarize, to_json
@@ -59,10 +59,10 @@ def choose_destination(
     """
     if given is None:
         parent = RUNS / mission_name
-        destination = Destination(parent / f"{_last_number(parent) + 1:03d}", is_numbered=True)
+        destination = Destination(parent / f"{last_number(parent) + 1:03d}", is_numbered=True)
     else:
         destination = Destination(given, is_there=given.is_dir(), ours=_earlier_run(given, read))
-    _refuse_unwritable(destination.directory)
+    refuse_unwritable(destination.directory)
     return destination
 
 
@@ -117,10 +117,83 @@ def write_atomically(destination: Destination, name: str, fill: Callable[[Path, 
             return destination.directory, filled
         except FileExistsError as problem:
             if not destination.is_numbered:
-                raise ResultsError(_refusal(destination.directory, problem)) from None
+                raise ResultsError(refusal(destination.directory, problem)) from None
             destination = choose_destination(name)
         except OSError as problem:
-            raise ResultsError(_refusal(destination.directory, problem)) from problem
+            raise ResultsError(refusal(destination.directory, problem)) from problem
+
+
+def keep_together(
+    destination: Destination,
+    name: str,
+    file: str,
+    texts: Callable[[Path], Mapping[str, str]],
+    summarize: Callable[[list[str]], dict[str, Any]],
+    draw: Callable[[Path], None] | None = None,
+) -> tuple[Path, dict[str, Any]]:
+    """Write texts, pictures, and a summary that lists all of them; complete or not at all.
+
+    Args:
+        destination: from `choose_destination`.
+        name: that it was chosen for.
+        file: of the summary.
+        texts: by file name, for the directory in which they will lie.
+        summarize: gives the summary for the files that were written.
+        draw: fills the folder it is given with figures.
+
+    Returns:
+        The directory, and the summary.
+
+    Raises:
+        ResultsError: the disk is full, or refused otherwise; nothing is left behind.
+    """
+
+    def fill(folder: Path, final: Path) -> dict[str, Any]:
+        for title, text in texts(final).items():
+            (folder / title).write_text(text, encoding="utf-8", newline="")
+        if draw is not None:
+            draw(folder)
+        summary = summarize(sorted([*(path.name for path in folder.iterdir()), file]))
+        (folder / file).write_text(to_json(summary), encoding="utf-8")
+        return summary
+
+    return write_atomically(destination, name, fill)
+
+
+@contextmanager
+def numbered_directory(parent: Path) -> Iterator[Path]:
+    """Take the next free `001`, `002`, ... at once, so that nobody else does; given back if the block fails, if empty.
+
+    Args:
+        parent: of it; made if it is not there.
+    """
+    made = make_parents(parent)
+    number = last_number(parent) + 1
+    while True:
+        directory = parent / f"{number:03d}"
+        try:
+            directory.mkdir()
+            break
+        except FileExistsError:
+            number += 1
+    try:
+        yield directory
+    except BaseException:
+        for folder in (directory, *made):
+            remove_if_empty(folder)
+        raise
+
+
+def last_number(parent: Path) -> int:
+    """The largest number among the directories `001`, `002`, ... of a parent; 0 where there is none.
+
+    Args:
+        parent: of them.
+    """
+    try:
+        return max((int(name) for name in os.listdir(parent) if name.isascii() and name.isdigit()), default=0)
+    except OSError:
+        return 0
 
 
 def _opened(destination: Destination) -> AbstractContextManager[Path]:
@@ -169,13 +242,6 @@ def _files(folder: Path) -> list[str]:
     return [path.relative_to(folder).as_posix() for path in folder.rglob("*") if not path.is_dir()]
 
 
-def _last_number(parent: Path) -> int:
-    try:
-        return max((int(name) for name in os.listdir(parent) if name.isascii() and name.isdigit()), default=0)
-    except OSError:
-        return 0
-
-
 def _earlier_run(directory: Path, read: Callable[[Path], dict[str, Any]]) -> tuple[str, ...]:
     """The entries of an earlier run in a directory; none where it is new or empty."""
     name = printable(str(directory))
@@ -198,8 +264,15 @@ def _earlier_run(directory: Path, read: Callable[[Path], dict[str, Any]]) -> tup
     return tuple(sorted({Path(file).parts[0] for file in found}))
 
 
-def _refuse_unwritable(directory: Path) -> None:
-    """Say before the flight, not after it, that its results could not be kept."""
+def refuse_unwritable(directory: Path) -> None:
+    """Say before the flight, not after it, that its results could not be kept.
+
+    Args:
+        directory: to keep them in.
+
+    Raises:
+        InputError: nothing can be written there.
+    """
     place = next(path for path in (directory, *directory.absolute().parents) if path.exists())
     if not place.is_dir():
         raise InputError(
@@ -209,11 +282,18 @@ def _refuse_unwritable(directory: Path) -> None:
         raise InputError(f"no permission to write in {printable(str(place))}; choose another place with -o DIR")
 
 
-def _refusal(directory: Path, problem: OSError) -> str:
+def refusal(directory: Path, problem: OSError, advice: str = "") -> str:
+    """That results cannot be written, and what to do.
+
+    Args:
+        directory: of them.
+        problem: what the disk said.
+        advice: what to do, where something was kept; else nothing was.
+    """
     name = printable(str(directory))
     reason = printable(problem.strerror or str(problem))
     if problem.errno in FULL:
-        advice = "make room, or choose another disk with -o DIR, and run again"
-        return f"the disk of {name} is full ({reason}); nothing was kept there: {advice}"
-    advice = "choose another place with -o DIR"
-    return f"the results could not be written to {name}: {reason}; nothing was kept there: {advice}"
+        advice = advice or "nothing was kept there: make room, or choose another disk with -o DIR, and run again"
+        return f"the disk of {name} is full ({reason}); {advice}"
+    advice = advice or "nothing was kept there: choose another place with -o DIR"
+    return f"the results could not be written to {name}: {reason}; {advice}"

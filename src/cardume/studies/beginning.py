@@ -1,7 +1,6 @@
 """How a study begins: what it will hold, whether anything varies, whether it fits on the disk."""
 
 import hashlib
-import os
 from collections.abc import Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from cardume.missions.atomic import new_directory
 from cardume.missions.available import catalog
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
+from cardume.missions.results import refuse_unwritable
 from cardume.studies.cases import Cases, cases_of
 from cardume.studies.constants import LARGEST_SEED
 from cardume.studies.distributing import Task, stamp
@@ -208,13 +208,7 @@ def refuse_taken(directory: Path) -> None:
         raise InputError(f"-o {name}: holds a study already; continue it with --resume, or give a new directory")
     if directory.exists() and not directory.is_dir():
         raise InputError(f"-o {name}: is a file; give a new directory with -o")
-    place = next(path for path in (directory, *directory.absolute().parents) if path.exists())
-    if not place.is_dir():
-        raise InputError(
-            f"{printable(str(place))} is a file, so nothing fits below it; choose another place with -o DIR"
-        )
-    if not os.access(place, os.W_OK | os.X_OK):
-        raise InputError(f"no permission to write in {printable(str(place))}; choose another place with -o DIR")
+    refuse_unwritable(directory)
     if directory.is_dir() and any(directory.iterdir()):
         raise InputError(f"-o {name}: is not empty, and holds no study; give a new directory with -o")
 

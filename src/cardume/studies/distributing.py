@@ -78,7 +78,15 @@ class Task:
 
 
 class Crew(Protocol):
-    """Flies tasks, and gives what each left as soon as it is there, in whatever order."""
+    """Flies tasks while it is entered, and gives what each left as soon as it is there, in whatever order."""
+
+    def __enter__(self) -> "Crew":
+        """Make ready."""
+        ...
+
+    def __exit__(self, _kind: type | None, _error: BaseException | None, _trace: TracebackType | None) -> None:
+        """Let go of what was made ready."""
+        ...
 
     @property
     def slots(self) -> int:
@@ -107,6 +115,12 @@ class Threads:
 
     def __init__(self, threads: int | None = None) -> None:
         self.slots = threads or num_processors()
+
+    def __enter__(self) -> "Threads":
+        return self
+
+    def __exit__(self, _kind: type | None, _error: BaseException | None, _trace: TracebackType | None) -> None:
+        pass
 
     def fly(
         self, tasks: Sequence[Task], should_stop: Callable[[], bool], progress: Callable[[int], None]

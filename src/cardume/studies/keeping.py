@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cardume.missions.results import Destination, choose_destination, write_atomically
-from cardume.missions.summary import read_kept, to_json
+from cardume.missions.results import Destination, keep_together
+from cardume.missions.summary import read_kept
 from cardume.simulation.flight import METRICS
 from cardume.studies.comparing import Comparison
 from cardume.studies.statistics import Estimate
@@ -21,19 +21,6 @@ from cardume.studies.statistics import Estimate
 FORMAT_VERSION = 1
 FILE_NAME = "compare.json"
 TABLE_NAME = "compare.csv"
-
-
-def comparison_destination(name: str, given: Path | None) -> Destination:
-    """Where a comparison will be kept; see `choose_destination`.
-
-    Args:
-        name: that the user has for it.
-        given: the directory that the user wants.
-
-    Raises:
-        InputError: it holds something else, is no directory, or cannot be written to.
-    """
-    return choose_destination(name, given, read_comparison)
 
 
 def keep_comparison(
@@ -48,7 +35,7 @@ def keep_comparison(
     """Write everything.
 
     Args:
-        destination: from `comparison_destination`.
+        destination: from `choose_destination`, with `read_comparison`.
         name: that it was chosen for.
         comparison: what was flown.
         words: what it says.
@@ -62,16 +49,14 @@ def keep_comparison(
         ResultsError: the disk is full, or refused otherwise; nothing is left behind.
     """
 
-    def fill(folder: Path, _final: Path) -> dict[str, Any]:
-        (folder / TABLE_NAME).write_text(to_csv(comparison), encoding="utf-8", newline="")
-        if draw is not None:
-            draw(folder)
-        files = sorted([*(path.name for path in folder.iterdir()), FILE_NAME])
-        summary = summarize_comparison(comparison, words=words, version=version, files=files)
-        (folder / FILE_NAME).write_text(to_json(summary), encoding="utf-8")
-        return summary
-
-    return write_atomically(destination, name, fill)
+    return keep_together(
+        destination,
+        name,
+        FILE_NAME,
+        lambda _final: {TABLE_NAME: to_csv(comparison)},
+        lambda files: summarize_comparison(comparison, words=words, version=version, files=files),
+        draw,
+    )
 
 
 def read_comparison(directory: Path) -> dict[str, Any]:

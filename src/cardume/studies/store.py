@@ -6,6 +6,7 @@ DIR/mission.yaml    the mission with every default written
 """
 
 import glob
+import hashlib
 import json
 import math
 import os
@@ -170,8 +171,24 @@ def open_study(directory: str | Path) -> "xarray.Dataset":
     return cast("xarray.Dataset", found.assign_coords(plain))
 
 
+# What a study says of itself, and of which kind each must be.
+ATTRIBUTES: Mapping[str, type] = {
+    "title": str,
+    "version": str,
+    "engine": str,
+    "mission": str,
+    "mission_hash": str,
+    "swept": list,
+    "sampling": str,
+    "seed": int,
+    "runs": int,
+    "command": str,
+    "files": dict,
+}
+
+
 def read_attributes(directory: Path) -> dict[str, Any]:
-    """What a study says of itself: mission, sampling, seed, version.
+    """What a study says of itself: mission, sampling, seed, version; each of the kind that it must be.
 
     Args:
         directory: of the study.
@@ -196,17 +213,22 @@ def read_attributes(directory: Path) -> dict[str, Any]:
             f"{name} has format {printable(str(version))[:40]}; this cardume reads format {FORMAT_VERSION}: use the"
             f" version that wrote it, {printable(str(found.get('version', 'unknown')))[:40]}, or fly the study again"
         )
+    for key, kind in ATTRIBUTES.items():
+        if not isinstance(found.get(key), kind):
+            raise damaged(directory, f"its {key} is {found[key]!r}" if key in found else f"its {key} is missing")
+    if hashlib.sha256(found["mission"].encode()).hexdigest() != found["mission_hash"]:
+        raise damaged(directory, "its mission is not the one of its mission_hash")
     return dict(found)
 
 
-def damaged(directory: Path, problem: Exception) -> DataError:
+def damaged(directory: Path, problem: Exception | str) -> DataError:
     """The error that a study's description cannot be read, to raise.
 
     Args:
         directory: of the study.
         problem: what was found.
     """
-    what = printable(f"{type(problem).__name__}: {problem}")[:200]
+    what = printable(problem if isinstance(problem, str) else f"{type(problem).__name__}: {problem}")[:200]
     return DataError(
         f"the study in {printable(str(directory))} is damaged ({what}): what it holds can no longer be told; bring"
         f" {STORE_NAME} back from a copy, or fly it again in a new directory"

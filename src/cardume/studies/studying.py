@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from cardume.errors import InputError
-from cardume.missions.results import FULL, ResultsError
+from cardume.missions.results import ResultsError, refusal
 from cardume.studies.arms import Given, open_given
 from cardume.studies.beginning import Begun, begin
 from cardume.studies.distributing import Cluster, Crew, Threads
@@ -82,19 +82,28 @@ def study(
     if resume and directory is None:
         raise InputError("--resume continues what is in a directory; say which with -o DIR")
     with ExitStack() as stack:
+        if scheduler is not None:
+            stack.enter_context(crew)  # a wrong address is told before anything flies
         folder = Path(directory or Path(stack.enter_context(TemporaryDirectory(prefix="cardume-")), "study"))
         if resume:
             begun = resume_at(stack, folder, read, runs, sampling, allowed, progress)
         else:
             begun = begin(folder, read, runs, sampling or "monte_carlo", command, allowed, progress)
-        if isinstance(crew, Cluster):
-            stack.enter_context(crew)
+        if scheduler is None:
+            stack.enter_context(crew)  # only now, as processes take their time to begin
         if not resume:
-            begun.create(stack)
+            _create(begun, stack)
         announce(begun.forecast(crew.slots))
         _fly(begun, crew, progress, should_stop)
         found = open_study(folder)
         return found.load() if directory is None else found
+
+
+def _create(begun: Begun, stack: ExitStack) -> None:
+    try:
+        begun.create(stack)
+    except OSError as problem:
+        raise ResultsError(refusal(begun.directory, problem)) from None
 
 
 def _fly(begun: Begun, crew: Crew, progress: Progress, should_stop: Callable[[], bool]) -> None:
@@ -112,7 +121,10 @@ def _fly(begun: Begun, crew: Crew, progress: Progress, should_stop: Callable[[],
         try:
             begun.keep(task.number, block)
         except OSError as problem:
-            raise _refusal(begun.directory, problem) from None
+            mended = (
+                f"what was flown is kept: mend that, then continue with --resume -o {printable(str(begun.directory))}"
+            )
+            raise ResultsError(refusal(begun.directory, problem, mended)) from None
         done += task.size
         progress("study", done, total)
 
@@ -125,12 +137,3 @@ def _crew(workers: int | None, scheduler: str | None, threads: int | None) -> Th
     if workers is None and scheduler is None:
         return Threads(threads)
     return Cluster(scheduler, workers or 1)
-
-
-def _refusal(directory: Path, problem: OSError) -> ResultsError:
-    name = printable(str(directory))
-    reason = printable(problem.strerror or str(problem))
-    what = (
-        f"the disk of {name} is full ({reason})" if problem.errno in FULL else f"{name} refuses to be written: {reason}"
-    )
-    return ResultsError(f"{what}; what was flown is kept: mend that, then continue with --resume -o {name}")

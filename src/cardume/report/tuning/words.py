@@ -6,8 +6,8 @@ import numpy as np
 
 from cardume.simulation.flight import METRICS
 from cardume.studies.comparing import values_of
-from cardume.studies.statistics import is_clear
-from cardume.studies.tuning.tune import Tuning, summarized
+from cardume.studies.tuning.trying import summarized
+from cardume.studies.tuning.tune import Tuning
 from cardume.units import SHOWN_IN, UNITS, show_quantity
 
 NEAR_END = 0.01  # of a range
@@ -28,15 +28,15 @@ def tuning_table(tuning: Tuning) -> str:
     count = len(evidence.start)
     seeds = f"{count} fresh seeds" if count > 1 else "one run, as nothing is random"
     rows = [(f"On {seeds}", "start", "best", "difference", "95 % interval")]
-    for metric, difference in zip(tuning.metrics, evidence.differences, strict=True):
+    for metric, difference, change in zip(tuning.metrics, evidence.differences, evidence.changes, strict=True):
         unit = METRICS[metric.rpartition(".")[2]].unit
         columns = [values_of(table, metric, tuning.mission) for table in (evidence.start, evidence.best)]
         told = [_number(summarized(column[np.isfinite(column)], tuning.quantile), unit) for column in columns]
         interval = f"{_number(difference.low, unit)} to {_number(difference.high, unit)}" if count > 1 else ""
-        real = "real" if is_clear(difference) else ""
+        real = "real" if change and count > 1 else ""
         rows.append((_title(metric, unit), *told, f"{_number(difference.mean, unit)}", f"{interval} {real}".strip()))
     if evidence.start.requirements:
-        met = [f"{int(table.met.all(axis=1).sum())} of {count}" for table in (evidence.start, evidence.best)]
+        met = [f"{int(table.all_met.sum())} of {count}" for table in (evidence.start, evidence.best)]
         rows.append(("all required is met", *met, "", ""))
     return "\n".join([*lines, "", *_aligned(rows)])
 
@@ -56,13 +56,20 @@ def _sentences(tuning: Tuning) -> Iterator[str]:
     tries = (
         f"{len(tuning.tries)} tries of {tuning.runs} runs each" if tuning.is_random else f"{len(tuning.tries)} tries"
     )
-    if tuning.is_interrupted:
+    gained, lost = _which(tuning, 1), _which(tuning, -1)
+    if tuning.evidence is None:
         yield f"Interrupted after {tries}: the best of them is kept, but not proved on fresh seeds."
     elif tuning.is_better:
         values = ", ".join(
             f"{k.key} {show_quantity(v, k.unit)}" for k, v in zip(tuning.knobs, tuning.best.values, strict=True)
         )
-        yield f"Better in {what}, by the {of}, after {tries}: {values}. Seeds that the search never saw agree."
+        better = f"{gained}, by the {of}," if gained else "how often runs are as required, or have numbers at all,"
+        yield f"Better in {better} after {tries}: {values}. Seeds that the search never saw agree."
+    elif gained and lost:
+        yield (
+            f"After {tries} the best compromise gains in {gained} and loses in {lost}, as fresh seeds confirm."
+            " The mission that is kept has its own values; the compromises are in summary.json."
+        )
     else:
         yield (
             f"After {tries} nothing is really better in {what} than what the mission has: on fresh seeds what was best"
@@ -85,6 +92,12 @@ def _sentences(tuning: Tuning) -> Iterator[str]:
             f"{len(tuning.front)} tries are such that none is better in all of {what}; the one recommended lies nearest"
             " to the best of each. All of them are in summary.json."
         )
+
+
+def _which(tuning: Tuning, change: int) -> str:
+    """The metrics that are really better, 1, or worse, -1."""
+    changes = tuning.evidence.changes if tuning.evidence else ()
+    return " and ".join(metric for metric, one in zip(tuning.metrics, changes, strict=False) if one == change)
 
 
 def _title(name: str, unit: str) -> str:

@@ -6,46 +6,19 @@ DIR/tries.csv        every try
 DIR/search.png       and .svg, what the caller draws
 """
 
-import csv
-import io
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cardume.missions.results import Destination, choose_destination, write_atomically
-from cardume.missions.summary import read_kept, to_json
+from cardume.missions.results import Destination, keep_together
 from cardume.simulation.flight import METRICS
+from cardume.studies.tuning.resuming import FILE_NAME, TABLE_NAME, described, to_csv
 from cardume.studies.tuning.searching import Try
 from cardume.studies.tuning.tune import Tuning
 
 FORMAT_VERSION = 1
-FILE_NAME, MISSION_NAME, TABLE_NAME = "summary.json", "mission.yaml", "tries.csv"
-
-
-def tuning_destination(name: str, given: Path | None) -> Destination:
-    """Where a tuning will be kept; see `choose_destination`.
-
-    Args:
-        name: that the user has for it.
-        given: the directory that the user wants.
-
-    Raises:
-        InputError: it holds something else, is no directory, or cannot be written to.
-    """
-    return choose_destination(name, given, read_tuning)
-
-
-def read_tuning(directory: Path) -> dict[str, Any]:
-    """What an earlier tuning left in a directory.
-
-    Args:
-        directory: of the tuning.
-
-    Raises:
-        DataError: missing, damaged, or not written by cardume.
-    """
-    return read_kept(directory / FILE_NAME, "cardume_tune", "a tuning", "tune again")
+MISSION_NAME = "mission.yaml"
 
 
 def keep_tuning(
@@ -60,7 +33,7 @@ def keep_tuning(
     """Write everything.
 
     Args:
-        destination: from `tuning_destination`.
+        destination: from `choose_destination`, with `read_tuning`.
         name: that it was chosen for.
         tuning: what was found.
         words: what it says.
@@ -74,35 +47,17 @@ def keep_tuning(
         ResultsError: the disk is full, or refused otherwise; nothing is left behind.
     """
 
-    def fill(folder: Path, final: Path) -> dict[str, Any]:
-        (folder / MISSION_NAME).write_text(tuning.recommended.to_yaml(final), encoding="utf-8")
-        (folder / TABLE_NAME).write_text(to_csv(tuning), encoding="utf-8", newline="")
-        if draw is not None:
-            draw(folder)
-        files = sorted([*(path.name for path in folder.iterdir()), FILE_NAME])
-        summary = summarize_tuning(tuning, words=words, version=version, files=files)
-        (folder / FILE_NAME).write_text(to_json(summary), encoding="utf-8")
-        return summary
-
-    return write_atomically(destination, name, fill)
-
-
-def to_csv(tuning: Tuning) -> str:
-    """One row for each try, in order; what is no number is empty.
-
-    Args:
-        tuning: what was found.
-    """
-    units = [METRICS[metric.rpartition(".")[2]].unit for metric in tuning.metrics]
-    titles = [f"{knob.key} [{knob.unit}]" if knob.unit else knob.key for knob in tuning.knobs]
-    titles += [f"{metric} [{unit}]" if unit else metric for metric, unit in zip(tuning.metrics, units, strict=True)]
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["try", *titles, "requirements_met", "runs_with_numbers"])
-    for number, one in enumerate(tuning.tries):
-        numbers = [repr(value) if math.isfinite(value) else "" for value in (*one.values, *one.metrics)]
-        writer.writerow([number, *numbers, repr(one.met), repr(one.counted)])
-    return text.getvalue()
+    return keep_together(
+        destination,
+        name,
+        FILE_NAME,
+        lambda final: {
+            MISSION_NAME: tuning.recommended.to_yaml(final),
+            TABLE_NAME: to_csv(tuning.settings, tuning.tries),
+        },
+        lambda files: summarize_tuning(tuning, words=words, version=version, files=files),
+        draw,
+    )
 
 
 def summarize_tuning(
@@ -132,6 +87,7 @@ def summarize_tuning(
         "front": [_try(tuning, one) for one in tuning.front],
         "is_better": tuning.is_better,
         "evidence": _evidence(tuning),
+        "settings": described(tuning.settings),
         "conclusions": list(words),
         "files": list(files),
     }
@@ -153,10 +109,12 @@ def _evidence(tuning: Tuning) -> dict[str, Any] | None:
     return {
         "runs": len(start),
         "first_seed": int(start.seeds[0]),
-        "requirements_met": {"start": int(start.met.all(axis=1).sum()), "best": int(best.met.all(axis=1).sum())},
+        "requirements_met": {"start": int(start.all_met.sum()), "best": int(best.all_met.sum())},
         "differences": {
-            metric: {key: _plain(value) for key, value in difference._asdict().items()}
-            for metric, difference in zip(tuning.metrics, tuning.evidence.differences, strict=True)
+            metric: {key: _plain(value) for key, value in difference._asdict().items()} | {"real": change != 0}
+            for metric, difference, change in zip(
+                tuning.metrics, tuning.evidence.differences, tuning.evidence.changes, strict=True
+            )
         },
     }
 

@@ -177,8 +177,10 @@ def search_several(attempt: Attempt, start: Shares, tries: int, goal: Goal, seed
 def best_of(tries: Sequence[Try], goal: Goal) -> Try:
     """The best try of a single metric; of several the one of the front that is nearest to being best in all.
 
+    Where some of the front are in no metric worse than the first try, as the mission is, it is one of those.
+
     Args:
-        tries: at least one.
+        tries: at least one; the first is the mission as it is.
         goal: what is better.
     """
     if len(goal.signs) == 1:
@@ -188,8 +190,11 @@ def best_of(tries: Sequence[Try], goal: Goal) -> Try:
         return max(tries, key=lambda found: (found.counted, found.met))
     values = np.array([found.metrics for found in front]) * np.array(goal.signs)
     spread = np.ptp(values, axis=0)
-    away = (values - values.min(axis=0)) / np.where(spread > 0.0, spread, 1.0)
-    return front[int(np.hypot.reduce(away, axis=1).argmin())]
+    away = np.hypot.reduce((values - values.min(axis=0)) / np.where(spread > 0.0, spread, 1.0), axis=1)
+    is_no_worse = (values <= np.array(tries[0].metrics) * np.array(goal.signs)).all(axis=1)
+    if any(found != tries[0] for found, is_one in zip(front, is_no_worse, strict=True) if is_one):
+        away = np.where(is_no_worse, away, np.inf)
+    return front[int(away.argmin())]
 
 
 def front_of(tries: Sequence[Try], goal: Goal) -> list[Try]:

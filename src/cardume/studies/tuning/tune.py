@@ -1,11 +1,8 @@
 """Find values of a few keys with which a mission does best over all that it draws, and prove it on fresh seeds."""
 
-import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 from cardume.errors import InputError
 from cardume.missions.available import catalog
@@ -13,43 +10,15 @@ from cardume.missions.drawing import refuse_sweeps
 from cardume.missions.mission import Mission
 from cardume.simulation.flight import METRICS
 from cardume.studies.arms import Arm, Given, check_metrics, open_given
-from cardume.studies.comparing import values_of
-from cardume.studies.flying import Progress, RunTable, fly_seeds
-from cardume.studies.statistics import Estimate, is_clear, paired_difference
+from cardume.studies.constants import DEFAULT_MET, DEFAULT_TRIES, DEFAULT_TUNED
+from cardume.studies.flying import Progress
+from cardume.studies.tuning.evidence import Evidence
 from cardume.studies.tuning.knobs import Knob, make_knobs, with_values
-from cardume.studies.tuning.searching import (
-    Enough,
-    Goal,
-    Shares,
-    Try,
-    best_of,
-    front_of,
-    search_one,
-    search_several,
-)
-from cardume.studies.work import expected_ticks, wants_lanes
+from cardume.studies.tuning.resuming import known_tries
+from cardume.studies.tuning.searching import Enough, Goal, Try, best_of, front_of, search_one, search_several
+from cardume.studies.tuning.trying import Settings, Tries
 
-DEFAULT_RUNS, DEFAULT_TRIES = 24, 60
 FEWEST_TRIES, MOST_TRIES, MOST_RUNS, MOST_METRICS = 10, 10_000, 10_000, 3
-FRESH_FROM = 1_000_000  # seeds after the first of the search
-FRESH_RUNS = 100
-HOPELESS = 8  # tries in which no run has a number, after which it is given up
-DEFAULT_MET = 0.95
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """The start and the best on seeds that the search never saw.
-
-    Attributes:
-        start: runs with the values that the mission had.
-        best: runs with the values that were found, of the same seeds.
-        differences: for each metric, how much more the best has than the start, in pairs of equal seed.
-    """
-
-    start: RunTable
-    best: RunTable
-    differences: tuple[Estimate, ...]
 
 
 @dataclass(frozen=True)
@@ -57,36 +26,59 @@ class Tuning:
     """What a search found.
 
     Attributes:
-        mission: that was tuned.
-        recommended: the same with the values to fly with: those found, if they are better, else its own.
-        knobs: what was varied.
-        metrics: for which.
-        quantile: of each metric over the runs [-]; None: its mean.
+        settings: what was searched.
+        recommended: the mission with the values to fly with: those found, if they are better, else its own.
         runs: of a try.
         tries: all, in order; the first is the mission as it was.
         best: the one that was found.
         front: for several metrics, all tries of which no other is better in each.
         evidence: on fresh seeds; None where the search was interrupted.
-        goal: what is better.
-        is_better: whether the evidence says so.
         is_random: whether a mission differs from seed to seed.
-        is_interrupted: whether it ended before its time.
     """
 
-    mission: Mission
+    settings: Settings
     recommended: Mission
-    knobs: tuple[Knob, ...]
-    metrics: tuple[str, ...]
-    quantile: float | None
     runs: int
     tries: tuple[Try, ...]
     best: Try
     front: tuple[Try, ...]
     evidence: Evidence | None
-    goal: Goal
-    is_better: bool
     is_random: bool
-    is_interrupted: bool
+
+    @property
+    def mission(self) -> Mission:
+        """That was tuned."""
+        return self.settings.mission
+
+    @property
+    def knobs(self) -> tuple[Knob, ...]:
+        """What was varied."""
+        return self.settings.knobs
+
+    @property
+    def metrics(self) -> tuple[str, ...]:
+        """For which."""
+        return self.settings.metrics
+
+    @property
+    def quantile(self) -> float | None:
+        """Of each metric over the runs [-]; None: its mean."""
+        return self.settings.quantile
+
+    @property
+    def goal(self) -> Goal:
+        """What is better."""
+        return self.settings.goal
+
+    @property
+    def is_better(self) -> bool:
+        """Whether the evidence says so."""
+        return self.evidence is not None and self.evidence.is_better
+
+    @property
+    def is_interrupted(self) -> bool:
+        """Whether it ended before its time."""
+        return self.evidence is None
 
     @property
     def start(self) -> Try:
@@ -99,13 +91,14 @@ def tune(
     vary: Sequence[str],
     metrics: Sequence[str],
     *,
-    runs: int = DEFAULT_RUNS,
+    runs: int = DEFAULT_TUNED,
     evaluations: int = DEFAULT_TRIES,
     quantile: float | None = None,
     met: float = DEFAULT_MET,
     seed: int | None = None,
     overrides: Sequence[str] = (),
     allow_code: Iterable[str | Path] = (),
+    resume: str | Path | None = None,
     progress: Progress = lambda stage, done, total: None,
     should_stop: Callable[[], bool] = lambda: False,
 ) -> Tuning:
@@ -128,6 +121,8 @@ def tune(
         seed: of the first run and of the search, instead of the mission's.
         overrides: values to change before, as `--set` takes them.
         allow_code: folders from which laws may be imported.
+        resume: directory of the same tuning, interrupted; what was tried there is not flown again, and the end is the
+            same.
         progress: called with "compile", "tune" or "compare", how much is done, and how much there is.
         should_stop: asked every few milliseconds; what was found by then is given.
 
@@ -143,155 +138,49 @@ def tune(
     _check(runs, evaluations, quantile, met, metrics)
     asked = check_metrics(metrics, [Arm("", opened, opened.name)], METRICS)
     knobs = make_knobs(opened, vary, catalog(folders))
-    first = opened.seed if seed is None else seed
     wanted = [METRICS[metric.rpartition(".")[2]].wanted for metric in asked]
-    goal = Goal(tuple(-1.0 if of == "at least" else 1.0 for of in wanted), met)
-    search = _Search(opened, knobs, asked, quantile, first, runs, evaluations, folders, progress, should_stop)
-    start = tuple(min(max(knob.share(knob.start), 0.0), 1.0) for knob in knobs)
-    try:
-        search.begin()
-        looking = search_one if len(asked) == 1 else search_several
-        looking(search.attempt, start, evaluations - 1, goal, first)
-    except Enough:
-        pass
-    if not search.tries:
-        raise InputError("interrupted before anything was flown")
-    search.complain_if_hopeless(1)
-    best = best_of(search.tries, goal)
-    evidence = None if should_stop() else search.prove(best)
-    better = evidence is not None and _is_better(evidence, goal, search.is_random)
-    return Tuning(
+    settings = Settings(
         mission=opened,
-        recommended=with_values(opened, knobs, best.values) if better or evidence is None else opened,
         knobs=knobs,
         metrics=asked,
         quantile=quantile,
-        runs=search.runs,
-        tries=tuple(search.tries),
+        first=opened.seed if seed is None else seed,
+        runs=runs,
+        evaluations=evaluations,
+        goal=Goal(tuple(-1.0 if of == "at least" else 1.0 for of in wanted), met),
+        folders=folders,
+    )
+    settings.check_seeds()
+    tries = Tries(settings, progress, should_stop, known_tries(Path(resume), settings) if resume else {})
+    _search(tries)
+    if not tries.made:
+        raise InputError("interrupted before anything was flown")
+    tries.complain_if_hopeless(1)
+    best = best_of(tries.made, settings.goal)
+    evidence = tries.prove(best)
+    is_kept = evidence is None or evidence.is_better
+    return Tuning(
+        settings=settings,
+        recommended=with_values(opened, knobs, best.values) if is_kept else opened,
+        runs=tries.runs,
+        tries=tuple(tries.made),
         best=best,
-        front=tuple(front_of(search.tries, goal)) if len(asked) > 1 else (),
+        front=tuple(front_of(tries.made, settings.goal)) if len(asked) > 1 else (),
         evidence=evidence,
-        goal=goal,
-        is_better=better,
-        is_random=search.is_random,
-        is_interrupted=evidence is None,
+        is_random=tries.is_random,
     )
 
 
-class _Search:
-    """Flies tries and remembers them."""
-
-    def __init__(
-        self,
-        mission: Mission,
-        knobs: tuple[Knob, ...],
-        metrics: tuple[str, ...],
-        quantile: float | None,
-        first: int,
-        runs: int,
-        most: int,
-        folders: tuple[str | Path, ...],
-        progress: Progress,
-        should_stop: Callable[[], bool],
-    ) -> None:
-        self._mission, self._knobs, self._metrics, self._quantile = mission, knobs, metrics, quantile
-        self._first, self.runs, self._most, self._folders = first, runs, most, folders
-        self._progress, self._should_stop = progress, should_stop
-        self._known: dict[tuple[float, ...], Try] = {}
-        self.tries: list[Try] = []
-        self.is_random = True
-        self._lanes = wants_lanes(expected_ticks(mission) * runs * most) or None
-
-    def begin(self) -> None:
-        """Try the mission as it is, and see whether its runs differ at all."""
-        table = self._fly(tuple(knob.start for knob in self._knobs), self._first, self.runs)
-        self.is_random = any(_differs(column) for column in (*table.metrics.values(), *table.drawn.values()))
-        if not self.is_random:
-            self.runs = 1
-        self._keep(tuple(knob.start for knob in self._knobs), table.first(self.runs))
-
-    def attempt(self, shares: Shares) -> Try:
-        """What some shares of the ranges lead to."""
-        values = tuple(knob.at(share) for knob, share in zip(self._knobs, shares, strict=True))
-        if values in self._known:
-            self._repeated += 1
-            if self._repeated > 20 * self._most:
-                raise Enough  # all that can be told apart was tried
-            return self._known[values]
-        if len(self.tries) >= self._most or self._should_stop():
-            raise Enough
-        found = self._keep(values, self._fly(values, self._first, self.runs))
-        self.complain_if_hopeless(HOPELESS)
-        return found
-
-    _repeated = 0
-
-    def complain_if_hopeless(self, count: int) -> None:
-        """Give up where no run of so many tries has a number.
-
-        Raises:
-            InputError: for which metric.
-        """
-        if len(self.tries) >= count and all(found.counted == 0.0 for found in self.tries):
-            what = " and ".join(self._metrics)
-            raise InputError(
-                f"--for {what}: none of {len(self.tries) * self.runs} runs has a number for it; look at one with"
-                " cardume run: a mission that never settles, or has one vehicle, lacks some (cardume list metrics)"
-            )
-
-    def prove(self, best: Try) -> Evidence:
-        """Fly start and best with seeds that the search never saw."""
-        first, count = self._first + FRESH_FROM, max(FRESH_RUNS, 2 * self.runs) if self.is_random else 1
-        tables = []
-        for done, values in enumerate((self.tries[0].values, best.values)):
-            self._progress("compare", done * count, 2 * count)
-            tables.append(self._fly(values, first, count))
-        self._progress("compare", 2 * count, 2 * count)
-        start, end = ([values_of(table, m, self._mission) for m in self._metrics] for table in tables)
-        return Evidence(tables[0], tables[1], tuple(map(paired_difference, end, start)))
-
-    def _fly(self, values: Sequence[float], first: int, count: int) -> RunTable:
-        def note(stage: str, done: int, total: int) -> None:
-            if stage == "compile":
-                self._progress(stage, done, total)
-
-        table = fly_seeds(
-            with_values(self._mission, self._knobs, values),
-            [first + k for k in range(count)],
-            allow_code=self._folders,
-            lanes=self._lanes,
-            progress=note,
-            should_stop=self._should_stop,
-        )
-        if len(table) < count:
-            raise Enough
-        return table
-
-    def _keep(self, values: tuple[float, ...], table: RunTable) -> Try:
-        columns = [values_of(table, metric, self._mission) for metric in self._metrics]
-        counted = np.isfinite(np.array(columns)).all(axis=0)
-        found = Try(
-            values,
-            tuple(summarized(column, self._quantile) for column in columns),
-            float(table.met.all(axis=1).mean()) if table.requirements else 1.0,
-            float(counted.mean()),
-        )
-        self._known[values] = found
-        self.tries.append(found)
-        self._progress("tune", len(self.tries), self._most)
-        return found
-
-
-def summarized(values: np.ndarray, quantile: float | None) -> float:
-    """The mean or a quantile of a metric over its runs [any]; NaN where one of them has no number.
-
-    Args:
-        values: [any] (run,)
-        quantile: [-] None: the mean.
-    """
-    if not np.isfinite(values).all():
-        return math.nan
-    return float(values.mean() if quantile is None else np.quantile(values, quantile))
+def _search(tries: Tries) -> None:
+    """Try until there are no tries left, or the user says stop."""
+    asked = tries.settings
+    start = tuple(min(max(knob.share(knob.start), 0.0), 1.0) for knob in asked.knobs)
+    looking = search_one if len(asked.metrics) == 1 else search_several
+    try:
+        tries.begin()
+        looking(tries.attempt, start, asked.evaluations - 1, asked.goal, asked.first)
+    except Enough:
+        pass
 
 
 def _check(runs: int, evaluations: int, quantile: float | None, met: float, metrics: Sequence[str]) -> None:
@@ -307,21 +196,3 @@ def _check(runs: int, evaluations: int, quantile: float | None, met: float, metr
         raise InputError(
             f"{len(set(metrics))} metrics are given; tune for one to {MOST_METRICS}, as --for cross_track_rms"
         )
-
-
-def _is_better(evidence: Evidence, goal: Goal, is_random: bool) -> bool:
-    """Whether the best really is: it meets what the start does not, or no metric is worse and one is clearly better."""
-    start, best = (float(t.met.all(axis=1).mean()) if t.requirements else 1.0 for t in (evidence.start, evidence.best))
-    if (start >= goal.met) != (best >= goal.met):
-        return best > start
-    gains = [-sign * difference.mean for sign, difference in zip(goal.signs, evidence.differences, strict=True)]
-    clear = [is_clear(d) if is_random else d.mean != 0.0 for d in evidence.differences]
-    is_worse = any(sure and gain < 0.0 for sure, gain in zip(clear, gains, strict=True))
-    is_gained = any(sure and gain > 0.0 for sure, gain in zip(clear, gains, strict=True))
-    return is_gained and (len(goal.signs) > 1 or not is_worse)
-
-
-def _differs(column: np.ndarray) -> bool:
-    """Whether a run has another value than the first."""
-    others = np.broadcast_to(column[:1], column.shape)
-    return not np.array_equal(column, others, equal_nan=column.dtype.kind == "f")
