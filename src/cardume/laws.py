@@ -52,6 +52,7 @@ from cardume.parameters import (
     RadiansPerSecond as RadiansPerSecond,
     Seconds as Seconds,
     Unit as Unit,
+    Words as Words,
     note_in,
     parameter_of,
     parameters_of,
@@ -101,8 +102,11 @@ _compiling = threading.RLock()  # a law has one address in a process, also where
 class Family:
     """A kind of law: what all its members receive and return, and the verb that calls them."""
 
-    def __init__(self, name: str, signals: tuple[Any, ...], result: Any, plain: str | None = None) -> None:
+    def __init__(
+        self, name: str, signals: tuple[Any, ...], result: Any, plain: str | None = None, may_leave_out: bool = False
+    ) -> None:
         self.name, self.signals, self.result, self.plain = name, signals, result, plain
+        self.may_leave_out = may_leave_out
         self.place = FAMILIES.index(name)
         self.laws: dict[str, Law] = {}
         _families[name] = self
@@ -132,7 +136,7 @@ class Family:
 
 
 def law_family(
-    name: str, signals: tuple[Any, ...], result: Any = float, plain: str | None = None
+    name: str, signals: tuple[Any, ...], result: Any = float, plain: str | None = None, may_leave_out: bool = False
 ) -> tuple[Callable[[Callable[..., Any]], "Law"], Callable[..., Any]]:
     """Make a family.
 
@@ -141,11 +145,12 @@ def law_family(
         signals: [-] record classes that its laws may ask for.
         result: [-] float, a record class or a tuple of them.
         plain: [-] the field of that record which a law means that returns one number; the others are then NaN.
+        may_leave_out: [-] whether its laws may leave out the last fields of that record that have defaults.
 
     Returns:
         The decorator for its laws, and the verb by which compiled code calls them.
     """
-    family = Family(name, signals, result, plain)
+    family = Family(name, signals, result, plain, may_leave_out)
     return family.decorator(), family.verb()
 
 
@@ -378,7 +383,7 @@ class Law:
             "load_fixed": load_fixed,
             "store": store,
             "at": at,
-            "as_answer": law_answer(self._family.result, self._family.plain),
+            "as_answer": law_answer(self._family.result, self._family.plain, self._family.may_leave_out),
         }
         exec(compile(f"def {name}({signals}, gains, memory, dt):\n{body}", __file__, "exec"), scope)
         return scope[name]

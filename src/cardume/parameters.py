@@ -22,6 +22,17 @@ class Bounds(NamedTuple):
     high_open: bool = False
 
 
+class Words:
+    """Words of which a mission file says one; compiled code sees its place among them, from 0.
+
+    Attributes:
+        choices: the words.
+    """
+
+    def __init__(self, *choices: str) -> None:
+        self.choices = choices
+
+
 class Once(NamedTuple):
     """Marks a law's argument that is computed once, before a mission: `Annotated[Plant, Once(plant_of)]`.
 
@@ -57,7 +68,7 @@ Probability = Annotated[float, Unit(""), Bounds(0.0, 1.0)]
 
 
 class Parameter(NamedTuple):
-    """What a mission file may set in a law."""
+    """What a mission file may set in a law: a number, or one of a few words, of which it is the place."""
 
     name: str
     default: float
@@ -66,6 +77,7 @@ class Parameter(NamedTuple):
     high: float = math.inf
     low_open: bool = False
     high_open: bool = False
+    words: tuple[str, ...] = ()
 
     def accepts(self, value: float) -> bool:
         """Whether a value lies within the bounds."""
@@ -81,6 +93,9 @@ def note_in(hint: Any, kind: type[N]) -> N | None:
 
 def parameter_of(name: str, default: Any, hint: Any) -> Parameter:
     """The parameter that an argument with a default is."""
+    if (words := note_in(hint, Words)) is not None:
+        last = len(words.choices) - 1.0
+        return Parameter(name, float(default), "", 0.0, last, words=words.choices)
     unit, bounds = note_in(hint, Unit) or Unit(""), note_in(hint, Bounds) or Bounds()
     return Parameter(name, float(default), unit.symbol, *bounds)
 

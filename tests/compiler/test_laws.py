@@ -11,9 +11,10 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import pytest
 from numba import config, njit
+from numba.core.errors import TypingError
 
 from cardume.compiler import Rows, load, rows_of, store
-from cardume.compiler.calls import FLAT
+from cardume.compiler.calls import FLAT, law_answer
 from cardume.errors import CardumeError, LawError
 from cardume.laws import (
     FAMILIES,
@@ -29,13 +30,24 @@ from cardume.laws import (
     Seconds,
     Unit,
     all_families,
+    family as family_of,
     laws_of,
 )
 from cardume.maths import atan2
 from cardume.onboard.compensation import compensation_law
 from cardume.onboard.compensation.base import Steering
 from cardume.onboard.guidance import guidance_law, guide, line_of_sight
-from cardume.signals import NOTHING, Course, Demand, GnssReading, Motion, Pace, PathError, VesselState
+from cardume.signals import (
+    NOTHING,
+    Course,
+    Demand,
+    GnssReading,
+    Motion,
+    NavigationEstimate,
+    Pace,
+    PathError,
+    VesselState,
+)
 from cardume.world.sensors import gnss_sensor
 
 KEPT = {"name": "mine"}
@@ -394,6 +406,32 @@ def test_compiled_laws_give_the_bits_of_plain_python() -> None:
         course, memory = rich(error, memory, 0.1)
         assert steer_once(*table, 0, error.cross_track) == course
     assert table[2][3:5].tolist() == list(memory)
+
+
+whole_answer, part_answer = law_answer(Demand, "course"), law_answer(NavigationEstimate, None, True)
+
+
+@njit
+def in_whole(rows: np.ndarray) -> Any:
+    return whole_answer(rows_of(rows), (1.0, 2.0))
+
+
+@njit
+def in_part(rows: np.ndarray) -> Any:
+    return part_answer(rows_of(rows), (1.0, 2.0))
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="only compiled records can be short")
+def test_only_laws_of_a_family_that_says_so_leave_something_out() -> None:
+    """A position law need not know its error; a guidance law says of everything whether it asks for it."""
+    import cardume.missions.available  # noqa: F401, importing it imports every family
+
+    assert [name for name in FAMILIES if family_of(name).may_leave_out] == ["position"]
+    found = in_part(np.zeros(1))
+    assert tuple(found[:2]) == (1.0, 2.0)
+    assert np.isnan(found[2:]).all()
+    with pytest.raises(TypingError):
+        in_whole(np.zeros(1))
 
 
 # ---- pickling --------------------------------------------------------------------------------------------------------

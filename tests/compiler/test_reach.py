@@ -5,13 +5,15 @@ from __future__ import annotations
 import importlib
 import shutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import pytest
 
 from cardume.compiler.calls import FLAT
-from cardume.compiler.reach import is_recursive
+from cardume.compiler.reach import fields_read, is_recursive
 from cardume.laws import Law
 
 HEADER = """
@@ -193,3 +195,90 @@ def test_another_module_with_the_same_code_does_not_find_what_the_first_one_left
         assert law.handle(lanes=False) > 0
         (tmp_path / f"{name}.py").unlink()
         del sys.modules[name]
+
+
+# ---- which fields of a record a function reads -----------------------------------------------------------------------
+
+
+class Draws(NamedTuple):
+    """Four numbers."""
+
+    a: float = 0.0
+    b: float = 0.0
+    c: float = 0.0
+    d: float = 0.0
+
+
+def reads_two(x: float, draws: Draws) -> float:
+    first = draws.b
+    second = draws.c
+    return x * first * second
+
+
+def reads_one_last(x: float, draws: Draws) -> float:
+    return x * draws.a
+
+
+def reads_none(x: float, draws: Draws) -> float:
+    return x
+
+
+def hands_it_on(x: float, draws: Draws) -> float:
+    return x + reads_one_last(x, draws)
+
+
+def renames_it(x: float, draws: Draws) -> float:
+    other = draws
+    return x + other.d
+
+
+def overwrites_it(x: float, draws: Draws) -> float:
+    draws = Draws(x, x, x, x)
+    return draws.a
+
+
+def reads_it_inside(x: float, draws: Draws) -> Callable[[], float]:
+    return lambda: x * draws.d
+
+
+READ = {
+    reads_two: {"b", "c"},
+    reads_one_last: {"a"},
+    reads_none: set(),
+    hands_it_on: set("abcd"),
+    renames_it: set("abcd"),
+    overwrites_it: set("abcd"),
+    reads_it_inside: set("abcd"),
+}
+
+
+@pytest.mark.parametrize("function", READ, ids=lambda f: f.__name__)
+def test_fields_that_are_read_are_seen_or_all_are_taken_for_read(function: Callable[..., Any]) -> None:
+    assert fields_read(function, Draws) == READ[function]
+
+
+# What Python 3.13 makes of some of them: two locals in one instruction, by name.
+IN_3_13: dict[Callable[..., Any], list[tuple[str, Any]]] = {
+    reads_two: [
+        ("LOAD_FAST", "draws"),
+        ("LOAD_ATTR", "b"),
+        ("STORE_FAST_LOAD_FAST", ("first", "draws")),
+        ("LOAD_ATTR", "c"),
+        ("STORE_FAST_LOAD_FAST", ("second", "x")),
+        ("LOAD_FAST", "first"),
+        ("BINARY_OP", 5),
+    ],
+    reads_one_last: [("LOAD_FAST_LOAD_FAST", ("x", "draws")), ("LOAD_ATTR", "a"), ("BINARY_OP", 5)],
+    hands_it_on: [("LOAD_FAST", "x"), ("LOAD_GLOBAL", "f"), ("LOAD_FAST_LOAD_FAST", ("x", "draws")), ("CALL", 2)],
+    renames_it: [("LOAD_FAST", "draws"), ("STORE_FAST_LOAD_FAST", ("other", "x")), ("LOAD_FAST", "other")],
+    overwrites_it: [("CALL", 4), ("STORE_FAST_LOAD_FAST", ("draws", "draws")), ("LOAD_ATTR", "a")],
+}
+
+
+@pytest.mark.parametrize("function", IN_3_13, ids=lambda f: f.__name__)
+def test_they_are_also_seen_where_one_instruction_names_two_locals(
+    function: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    steps = [SimpleNamespace(opname=name, argval=value) for name, value in IN_3_13[function]]
+    monkeypatch.setattr("dis.get_instructions", lambda _: steps)
+    assert fields_read(function, Draws) == READ[function]

@@ -10,10 +10,12 @@ import pytest
 
 from acceptance.test_bits import assert_same
 from cardume.laws import Seconds
-from cardume.onboard.messaging import messaging_law
+from cardume.onboard.messaging import messaging_law, tdma
 from cardume.signals import Outbox
 from cardume.simulation.fly import fly, fly_batch
+from cardume.simulation.memo import NO_MEMO
 from cardume.simulation.plan import Choice, Plan
+from cardume.simulation.sizes import num_slots
 from properties.flown import plan_of
 from simulation.ticks import watch
 
@@ -187,3 +189,11 @@ def test_messages_that_were_sent_arrive_or_not_by_pairs():
     assert len(found) == 10 * 6
     assert all(found.values())
     assert {(s, r) for s, r, _ in found} == set(itertools.permutations("abc", 2))
+
+
+@pytest.mark.parametrize(("slot", "expected"), [(0.0, 64), (0.7, 7)])
+def test_a_slot_that_nobody_has_worked_out_is_no_division_by_zero(slot, expected):
+    """A plan made by hand may have the law's own default; then there is room for a message in every tick."""
+    own = plan({"a": 0.0, "b": 30.0}, (0.0, 0.0))
+    vehicles = [replace(v, laws=v.laws | {"messaging": Choice(tdma, {"slot": slot})}) for v in own.vehicles]
+    assert num_slots(vehicles, 0.01, NO_MEMO) == expected

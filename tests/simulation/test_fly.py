@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+import subprocess
+import sys
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +31,7 @@ from cardume.signals import (
     Water,
     Where,
 )
+from cardume.simulation import warming
 from cardume.simulation.fly import SLICE, fly, fly_batch
 from cardume.simulation.plan import Choice, Plan
 from cardume.simulation.recording import LOG, RECORDS, Truth
@@ -102,6 +105,21 @@ def test_warming_up_tells_how_far_it_is(plan: Plan) -> None:
     assert told[0][0] == 0
     assert told[-1][0] == told[-1][1]
     assert [t[0] for t in told] == sorted(t[0] for t in told)
+
+
+def test_whatever_stops_warming_up_leaves_no_process_behind(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The one that compiles beside is ended and waited for, or it would stay in the table of processes as a zombie."""
+    beside = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+
+    def interrupted(*_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(warming, "is_kept", lambda _: False)
+    monkeypatch.setattr(warming, "compile_beside", lambda _: beside)
+    monkeypatch.setattr(warming, "advance", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        warm_up(plan)
+    assert beside.returncode is not None
 
 
 # ---- trouble ---------------------------------------------------------------------------------------------------------

@@ -103,15 +103,17 @@ def _call_lanes(
 
 
 @cache
-def law_answer(result: Any, plain: str | None = None) -> Callable[..., Any]:
+def law_answer(result: Any, plain: str | None = None, may_leave_out: bool = False) -> Callable[..., Any]:
     """A function (rows, answer) that makes what a law returned as wide as the rows it was given.
 
     Args:
         result: float, a record class, or a tuple of them.
         plain: the field that a law means which returns one number; the others are then NaN. None: it may not.
+        may_leave_out: whether a law may leave out the last fields that have defaults.
     """
     fields = result._fields if plain else ()
-    defaults = getattr(result, "_field_defaults", {})  # of what a law leaves out, which compiled records lack
+    # compiled records lack what a law leaves out
+    defaults = getattr(result, "_field_defaults", {}) if may_leave_out else {}
 
     def as_answer(rows: Rows, answer: Any) -> Any:
         if plain is None or isinstance(answer, tuple):

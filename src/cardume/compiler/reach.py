@@ -103,6 +103,8 @@ def fingerprint(function: Callable[..., Any], wrapper: str = "") -> str:
 def fields_read(function: Callable[..., Any], kind: type[Any]) -> set[str]:
     """Which fields of a record a function reads of its argument of that kind; all of them where that cannot be seen.
 
+    Seen is only the plain case: the argument is loaded, and the next instruction takes a field of it.
+
     Args:
         function: plain Python with annotations.
         kind: the class of the record.
@@ -111,14 +113,17 @@ def fields_read(function: Callable[..., Any], kind: type[Any]) -> set[str]:
         Names of fields; none without such an argument.
     """
     hints = typing.get_type_hints(function)
-    names = [name for name, hint in hints.items() if hint is kind and name != "return"]
+    names = {name for name, hint in hints.items() if hint is kind and name != "return"}
     everything, found = set(kind._fields), set()
     steps = list(dis.get_instructions(function))
     for step, after in zip(steps, [*steps[1:], None], strict=True):
+        # since Python 3.13 one instruction may store or load a local and then load another: both stand in it, in order
         mentioned = step.argval if isinstance(step.argval, tuple) else (step.argval,)
-        if not step.opname.startswith("LOAD") or not set(names) & set(mentioned):
+        if names.isdisjoint(mentioned):
             continue
-        if after is None or after.opname != "LOAD_ATTR" or len(mentioned) > 1 or after.argval not in everything:
+        is_loaded = step.opname.startswith("LOAD") or "_LOAD" in step.opname
+        is_last = names.isdisjoint(mentioned[:-1])
+        if not (is_loaded and is_last and after and after.opname == "LOAD_ATTR" and after.argval in everything):
             return everything
         found.add(after.argval)
     return found

@@ -5,7 +5,7 @@ the air.  Where two overlap each is lost unless it is louder by the listener's `
 all.  A modem that is still sending does not send another message.
 """
 
-from cardume.compiler import at, compiled, load, some, store, where
+from cardume.compiler import compiled, load, some, store, where
 from cardume.maths import hypot
 from cardume.simulation.fleet import (
     NEVER,
@@ -74,8 +74,8 @@ def sound_everywhere(fleet: Fleet, sender: int, time: float) -> None:
 def overlap(fleet: Fleet, listener: int, sender: int) -> None:
     """Compare a vehicle's message of this tick with all others that sound at a listener."""
     sends, slot = load(fleet.air.sending, sender) > 0.5, slot_of(fleet, sender)
-    new, capture = get_on_air(fleet.air.on_air, row_of(fleet, listener, sender, slot)), 0.0 * load(fleet.air.due, 0)
-    capture = capture + get_medium(fleet.air.modems, listener).capture
+    new = get_on_air(fleet.air.on_air, row_of(fleet, listener, sender, slot))
+    capture = get_medium(fleet.air.modems, listener).capture
     for other in range(fleet.size):
         for earlier in range(fleet.air.slots):
             if other != sender or earlier != slot:
@@ -102,7 +102,7 @@ def lose(fleet: Fleet, listener: int, sender: int, slot: int, lost: bool) -> Non
         for source in range(load(sources, 0)):
             if load(sources, source + 1) == sender:
                 row = (listener * fleet.air.widest + source) * fleet.air.slots + slot
-                pending = load(at(fleet.air.arrivals, row), 0)
+                pending = load(fleet.air.arrivals, row)
                 is_new = lost & (pending < NEVER)
                 note_lost(fleet, load(fleet.air.logged, row), is_new)
                 store(fleet.air.arrivals, row, where(is_new, NEVER, pending))

@@ -49,7 +49,8 @@ def _interval(vehicle: VehiclePlan, tick: float) -> float:
     messaging = vehicle.laws["messaging"]
     if messaging.law.asks_for(Question) or messaging.law.asks_for(Forecast):
         return tick
-    return messaging.value_or("period", messaging.value_or("slot", 0.5))
+    given = messaging.value_or("period", messaging.value_or("slot", 0.5))
+    return max(tick, given)  # a slot of 0 is one that nobody has worked out; no law speaks twice in a tick
 
 
 def past_ticks(vehicles: Sequence[VehiclePlan], tick: float, memo: Memo) -> int:

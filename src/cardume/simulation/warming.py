@@ -49,6 +49,7 @@ def warm_up(plan: Plan, progress: Callable[[int, int], None] = lambda done, tota
     finally:
         if beside is not None:
             beside.kill()
+            beside.wait()  # else it stays a zombie for as long as this process lives
         if was_on:
             gc.enable()
     progress(total, total)

@@ -9,4 +9,4 @@ What of its estimate a law does not know may be left out: the current, and the c
 from cardume.laws import law_family
 from cardume.signals import Fix, Motion, NavigationEstimate
 
-position_law, estimate_position = law_family("position", (Fix, Motion), NavigationEstimate)
+position_law, estimate_position = law_family("position", (Fix, Motion), NavigationEstimate, may_leave_out=True)
