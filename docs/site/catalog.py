@@ -57,6 +57,9 @@ def _law(told: dict[str, Any]) -> str:
 
 def _parameter(parameter: dict[str, Any]) -> str:
     unit, ends = parameter["unit"], []
+    if parameter["words"]:
+        words = ", ".join(f"`{word}`" for word in parameter["words"])
+        return f"| `{parameter['name']}` | `{parameter['default']}` | {words} | {_plain(parameter['meaning'])} |"
     if parameter["low"] is not None:
         ends.append(f"{'above' if parameter['low_open'] else 'at least'} {show_quantity(parameter['low'], unit)}")
     if parameter["high"] is not None:

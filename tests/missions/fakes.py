@@ -16,6 +16,7 @@ class FakeParameter:
     high: float = math.inf
     low_open: bool = False
     high_open: bool = False
+    words: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

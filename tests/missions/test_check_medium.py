@@ -6,9 +6,13 @@ import re
 
 import pytest
 
+from cardume.errors import MissionError
 from cardume.missions.available import catalog
 from cardume.missions.checks import Finding, check_mission
 from cardume.missions.loading import parse_mission
+from cardume.missions.planning import make_plan
+from cardume.world.acoustics.ainslie_mccolm import ainslie_mccolm
+from cardume.world.acoustics.francois_garrison import francois_garrison
 
 TEXT = """
 cardume: 1
@@ -100,3 +104,46 @@ def test_a_profile_sets_what_is_left_out_and_a_saved_mission_has_it_all(profile)
             "tritech_micron": 0.2,
         }[profile]
     )
+
+
+@pytest.mark.parametrize("curve", ["logistic", "fsk"])
+def test_noise_is_judged_by_the_curve_that_is_chosen(curve):
+    """At the level that is suggested 2 % are lost, whichever the curve."""
+    chosen = ["acoustics.profile=micromodem_fsk", f"acoustics.packet_errors={curve}", "messaging.slot=5 s"]
+    (warning,) = [f for f in findings("acoustics.source_level_db=80 dB", *chosen) if f.key.endswith("level_db")]
+    assert "loses 100 % of the packets" in warning.message
+    level = warning.suggestion
+    assert not [f for f in findings(level, *chosen) if f.key.endswith("level_db")]
+    lower = f"acoustics.source_level_db={number(level, r'=.?([0-9.]+)') - 0.5} dB"
+    assert [f for f in findings(lower, *chosen) if f.key.endswith("level_db")]
+
+
+def test_words_of_a_law_are_numbers_in_flight_and_words_in_a_saved_mission():
+    mission = parse_mission(TEXT, catalog(), ["acoustics.absorption=ainslie_mccolm", "acoustics.packet_errors=fsk"])
+    assert mission.vehicles[0].acoustics.parameters["absorption"] == "ainslie_mccolm"
+    assert parse_mission(mission.to_yaml(), catalog()).vehicles == mission.vehicles
+    assert "absorption: ainslie_mccolm" in mission.to_yaml()
+    plain = parse_mission(TEXT, catalog())
+    assert plain.vehicles[0].acoustics.parameters["packet_errors"] == "logistic"
+    media = [make_plan(m, catalog()).plan.vehicles[0].medium for m in (mission, plain)]
+    values = {"frequency": 26000.0, "temperature": 12.0, "salinity": 35.0, "depth": 20.0, "acidity": 8.1}
+    assert media[0].absorption == ainslie_mccolm(*values.values())
+    assert media[1].absorption == francois_garrison(*values.values())
+    assert [m.by_theory for m in media] == [1.0, 0.0]
+
+
+@pytest.mark.parametrize("value", ["thorp", "1", "0.5"])
+def test_a_word_that_is_none_is_refused(value):
+    with pytest.raises(MissionError, match="francois_garrison"):
+        parse_mission(TEXT, catalog(), [f"acoustics.absorption={value}"])
+
+
+def test_paths_beyond_the_numbers_of_a_packet_are_told():
+    far = ["acoustics.codec=compact", "path.start.north=3250 m"]
+    (warning,) = [f for f in check_mission(parse_mission(TEXT, catalog(), far)) if f.key == "acoustics.codec"]
+    assert warning.level == "warning"
+    assert "beyond the numbers for north" in warning.message
+    assert "13.4 m" in warning.message  # 3250 + 40 - 3276.6
+    assert warning.suggestion == "acoustics.codec=exact"
+    near = parse_mission(TEXT, catalog(), ["acoustics.codec=compact"])
+    assert not [f for f in check_mission(near) if f.key == "acoustics.codec"]

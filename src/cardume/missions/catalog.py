@@ -11,7 +11,7 @@ from cardume.errors import LawError
 
 
 class Parameter(Protocol):
-    """A number that a mission file may set in a law."""
+    """A number, or a word, that a mission file may set in a law."""
 
     @property
     def name(self) -> str:
@@ -40,6 +40,10 @@ class Parameter(Protocol):
     @property
     def high_open(self) -> bool:
         """Whether the upper bound itself is excluded."""
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """The words of which a file says one, the number being its place among them; none for a number."""
 
 
 class Law(Protocol):

@@ -65,10 +65,11 @@ def _parameter(parameter: Any, said: Mapping[str, str]) -> dict[str, Any]:
     return {
         "name": parameter.name,
         "meaning": said.get(parameter.name, ""),
-        "default": parameter.default,
+        "default": parameter.words[round(parameter.default)] if parameter.words else parameter.default,
         "unit": parameter.unit,
         "low": parameter.low if math.isfinite(parameter.low) else None,
         "high": parameter.high if math.isfinite(parameter.high) else None,
         "low_open": parameter.low_open,
         "high_open": parameter.high_open,
+        "words": list(parameter.words),
     }

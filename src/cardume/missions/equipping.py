@@ -10,7 +10,6 @@ from cardume.laws import Law, laws_of
 from cardume.missions.catalog import Catalog
 from cardume.missions.mission import Mission
 from cardume.missions.orders import deepest, order_book, safety_of, start_depth
-from cardume.missions.seabed import numbers_only
 from cardume.missions.vehicle import LawChoice, RelativeStart, Sensors, Vehicle
 from cardume.onboard.mind import Datasheet, Setup
 from cardume.paths.projection import point_at
@@ -29,7 +28,7 @@ LEAST_PATIENCE = 5.0  # [s] for which a reading may stay the same
 
 
 def choice_of(chosen: LawChoice, catalog: Catalog) -> Choice:
-    """A law and its numbers, found again by name.
+    """A law and its numbers, found again by name: words as their places, without what only planning reads.
 
     Args:
         chosen: in a mission.
@@ -42,7 +41,9 @@ def choice_of(chosen: LawChoice, catalog: Catalog) -> Choice:
         law: Any = catalog.resolve_law(chosen.family, chosen.name)
     else:
         law = laws_of(chosen.family)[chosen.name]
-    return Choice(law, {name: float(value) for name, value in chosen.parameters.items()})
+    given = {p.name: chosen.parameters[p.name] for p in law.parameters if p.name in chosen.parameters}
+    words = {p.name: p.words for p in law.parameters if p.words}
+    return Choice(law, {k: float(words[k].index(v) if k in words else v) for k, v in given.items()})
 
 
 def plan_vehicle(
@@ -77,7 +78,7 @@ def plan_vehicle(
         "messaging": choice(vehicle.messaging),
         "model": choice(vehicle.model),
         "autopilot": memo.recall("autopilot", (vehicle.model, vehicle.autopilot), lambda: _autopilot(vehicle, catalog)),
-        "acoustics": memo.recall("channel", (heard,), lambda: choice_of(numbers_only(heard), catalog)),
+        "acoustics": memo.recall("channel", (heard,), lambda: choice_of(heard, catalog)),
         "current": water,
         **({"bathymetry": _seabed_law(seabed, catalog, memo)} if seabed else {}),
         **memo.recall(
@@ -143,7 +144,7 @@ def _setup(vehicle: Vehicle, laws: dict[str, Choice]) -> Setup:
 
 
 def _seabed_law(seabed: LawChoice, catalog: Catalog, memo: Memo) -> Choice:
-    return memo.recall("seabed law", (seabed,), lambda: choice_of(numbers_only(seabed), catalog))
+    return memo.recall("seabed law", (seabed,), lambda: choice_of(seabed, catalog))
 
 
 def _autopilot(vehicle: Vehicle, catalog: Catalog) -> Choice:

@@ -112,18 +112,13 @@ def law_fields(law: Law, announced: Mapping[str, float] | None = None) -> tuple[
         announced: values that some of them have by default beside another law.
     """
     known = announced or {}
-    numbers = tuple(
-        Field(
-            parameter.name,
-            _quantity(parameter, law.family),
-            float(known.get(parameter.name, parameter.default)),
-            None,
-            False,
-            "",
-        )
-        for parameter in law.parameters
-    )
-    return TEXT_PARAMETERS.get((law.family, law.name), ()) + numbers
+
+    def field(parameter: Parameter) -> Field:
+        number, words = float(known.get(parameter.name, parameter.default)), parameter.words
+        kind = Word(words, fixed=True) if words else _quantity(parameter, law.family)
+        return Field(parameter.name, kind, words[round(number)] if words else number, None, False, "")
+
+    return TEXT_PARAMETERS.get((law.family, law.name), ()) + tuple(field(p) for p in law.parameters)
 
 
 def preset_by(law: Law, entries: dict[str, Node]) -> dict[str, float]:

@@ -131,10 +131,11 @@ def _fields(record: type, value: Any, directory: Path | None) -> dict[str, Any]:
 
 def _choice(kind: Laws, choice: LawChoice, directory: Path | None) -> dict[str, Any]:
     texts = {field.key: field.kind for field in TEXT_PARAMETERS.get((choice.family, choice.name), ())}
-    values = {
-        key: write(texts.get(key) or Quantity(choice.units[key]), value, directory)
-        for key, value in choice.parameters.items()
-    }
+
+    def kind_of(key: str) -> Kind:
+        return texts.get(key) or (Quantity(choice.units[key]) if key in choice.units else Kind())  # Kind(): a word
+
+    values = {key: write(kind_of(key), value, directory) for key, value in choice.parameters.items()}
     return {kind.selector: choice.name, **values}
 
 

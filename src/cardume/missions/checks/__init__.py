@@ -66,6 +66,7 @@ CHECKS: tuple[Check, ...] = (
     medium.check_slot,
     medium.check_talking_at_once,
     medium.check_noise,
+    medium.check_codec,
     depths.check_slope,
     depths.check_aground,
     depths.check_echo,

@@ -3,14 +3,16 @@
 import math
 from collections.abc import Iterator
 
-from cardume.missions.checks.finding import Finding, Ranked, at_least, setting, setting_word, show, worst
+from cardume.missions.checks.finding import Finding, Ranked, at_least, setting, setting_word, show, smallest, worst
 from cardume.missions.checks.fixes import travel_time
 from cardume.missions.checks.scene import Craft, Scene
 from cardume.missions.medium_access import broadcast_slot, cycle_of, needed_slot, slot_of
-from cardume.world.acoustics.modem import received_level
+from cardume.onboard.messaging.codec import COMPACT
+from cardume.world.acoustics.modem import packet_loss, received_level
 
 IN_TURN = ("tdma", "polling")
-CLEAR = 4.0  # widths of the curve of packet errors above its middle: 2 % are lost
+CLEAR = 0.02  # [-] share of packets that noise may take
+MOST_GAIN = 300.0  # [dB]
 
 
 def _in_turn(scene: Scene) -> list[Craft]:
@@ -109,11 +111,36 @@ def _drowned(scene: Scene, place: int) -> Iterator[Ranked]:
     if medium is None or len(scene.crafts) < 2 or away > medium.max_range:
         return
     ratio = received_level(medium, away) - medium.noise_level
-    lacking = medium.half + CLEAR * medium.width - ratio
-    if lacking > 0.0:
+    loss = packet_loss(medium, ratio, medium.payload)
+    if loss > CLEAR:
+        lacking = smallest(lambda gain: packet_loss(medium, ratio + gain, medium.payload) <= CLEAR, 0.0, MOST_GAIN)
         key = scene.key(craft, "acoustics.source_level_db")
         message = (
-            f"{craft.name} hears what is {show(away, 'm')} away {ratio:.1f} dB above the noise, and its modem loses"
-            f" half of the packets at {medium.half:.1f} dB"
+            f"{craft.name} hears what is {show(away, 'm')} away {ratio:.1f} dB above the noise, at which its modem"
+            f" loses {100.0 * loss:.0f} % of the packets"
         )
         yield Ranked(lacking, Finding("warning", key, message, at_least(key, medium.source_level + lacking, "dB")))
+
+
+def check_codec(scene: Scene) -> list[Finding]:
+    """Paths that lead where the compact codec has no numbers for."""
+    if len(scene.crafts) < 2:
+        return []
+    return worst(ranked for craft in scene.crafts if craft.plan.grid is not None for ranked in _unsaid(scene, craft))
+
+
+def _unsaid(scene: Scene, craft: Craft) -> Iterator[Ranked]:
+    key, stations = scene.key(craft, "acoustics.codec"), craft.stations
+    numbers = (
+        ("north", stations.north, COMPACT.position, "its fixes are not told"),
+        ("east", stations.east, COMPACT.position, "its fixes are not told"),
+        ("coordination state", stations.state, COMPACT.state, "coordination does without it"),
+    )
+    for name, values, said, consequence in numbers:
+        beyond = max(float(values.max()) - said.high, said.low - float(values.min()))
+        if beyond > 0.0:
+            message = (
+                f"{craft.name} comes {show(beyond, 'm')} beyond the numbers for {name} that a compact packet has,"
+                f" {show(said.low, 'm')} to {show(said.high, 'm')}: there {consequence}"
+            )
+            yield Ranked(beyond, Finding("warning", key, message, setting_word(key, "exact")))

@@ -1,5 +1,5 @@
 """The seabed of a mission from files: CF NetCDF grids and ESRI ASCII grids."""
 
-from cardume.missions.seabed.reading import numbers_only, read_seabed
+from cardume.missions.seabed.reading import read_seabed
 
-__all__ = ["numbers_only", "read_seabed"]
+__all__ = ["read_seabed"]

@@ -12,17 +12,11 @@ from cardume.missions.mission import Mission
 from cardume.missions.seabed.esri_ascii import read_esri_ascii
 from cardume.missions.seabed.grid import DepthGrid
 from cardume.missions.seabed.netcdf import read_netcdf
-from cardume.missions.vehicle import LawChoice, Table
+from cardume.missions.vehicle import Table
 from cardume.world.bathymetry.gridded import pack_seabed
 
 MARGIN = 1000.0  # [m] around the paths that is read
 ASCII = (".asc", ".txt", ".grd")
-
-
-def numbers_only(chosen: LawChoice) -> LawChoice:
-    """A law of the seabed without what compiled code does not see."""
-    numbers = {key: value for key, value in chosen.parameters.items() if isinstance(value, (int, float))}
-    return LawChoice(family=chosen.family, name=chosen.name, parameters=Table(numbers))
 
 
 def read_seabed(mission: Mission, origin: GeoPoint | None, lines: Sequence[np.ndarray]) -> np.ndarray:

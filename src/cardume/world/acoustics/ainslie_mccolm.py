@@ -1,4 +1,4 @@
-"""Absorption of sound in sea water, by Ainslie and McColm: simpler, and within some 2 % of Francois and Garrison."""
+"""Absorption of sound in sea water, by Ainslie and McColm: simpler; 4 % off the other for 7 to 100 kHz, 0 to 20 deg C."""
 
 from cardume.compiler import compiled
 from cardume.maths import exp, sqrt

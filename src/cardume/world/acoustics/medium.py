@@ -4,11 +4,14 @@ from typing import Annotated, NamedTuple
 
 from cardume.laws import Meters, MetersPerSecond, NotNegative, Positive, Seconds
 from cardume.maths import log
-from cardume.parameters import Bounds, Unit
+from cardume.parameters import Bounds, Unit, Words
+from cardume.world.acoustics.ainslie_mccolm import ainslie_mccolm
 from cardume.world.acoustics.ambient_noise import ambient_noise
 from cardume.world.acoustics.francois_garrison import francois_garrison
 from cardume.world.acoustics.sound_speed import mackenzie
 from cardume.world.acoustics.spreading import DECIBEL
+
+HALF = 0.5  # between the two numbers that stand for two words
 
 Decibels = Annotated[float, Unit("dB")]
 Hertz = Annotated[float, Unit("Hz")]
@@ -20,6 +23,8 @@ Acidity = Annotated[float, Unit(""), Bounds(7.0, 9.0)]
 Exponent = Annotated[float, Unit(""), Bounds(1.0, 2.5)]
 Deep = Annotated[float, Unit("m"), Bounds(0.0, 12_000.0)]
 Count = Annotated[float, Unit(""), Bounds(0.0, 4096.0)]
+Absorption = Annotated[float, Words("francois_garrison", "ainslie_mccolm")]
+Curve = Annotated[float, Words("logistic", "fsk")]
 FrameSize = Annotated[float, Unit(""), Bounds(1.0, 4096.0)]
 
 
@@ -35,8 +40,10 @@ class Medium(NamedTuple):
     spreading: float  # [-]
     source_level: float  # [dB] re 1 uPa at 1 m
     noise_level: float  # [dB] re 1 uPa in the modem's band
-    half: float  # [dB] signal to noise at which half of the packets are lost
+    half: float  # [dB] signal to noise at which half of the packets are lost, by the logistic curve
     width: float  # [dB] of that slope
+    by_theory: float  # [-] 1: packet errors of frequency-hopped FSK by its union bound, 0: the logistic curve
+    bit_gain: float  # [dB] by which Eb/N0 exceeds signal to noise in the band
     share: float  # [-] of the time that a link is out
     burst: float  # [s] mean length of an outage
     max_range: float  # [m]
@@ -58,8 +65,10 @@ def medium_of(
     bandwidth: Positive[Hertz] = 16000.0,
     half_db: Decibels = -0.09,
     width_db: Positive[Decibels] = 0.72,
+    packet_errors: Curve = 0.0,
     capture_db: Decibels = 6.0,
     spreading: Exponent = 1.5,
+    absorption: Absorption = 0.0,
     sound_speed: NotNegative[MetersPerSecond] = 0.0,
     temperature_celsius: Celsius = 12.0,
     salinity: Salinity = 35.0,
@@ -74,7 +83,8 @@ def medium_of(
 ) -> Medium:
     """Reduce a modem, the water and the noise to what each message needs.
 
-    noise = N(f) + 10 log10(B) + platform,   alpha by Francois & Garrison,   c by Mackenzie unless it is given
+    noise = N(f) + 10 log10(B) + platform,   alpha by the formula that is chosen,   c by Mackenzie unless it is given,
+    Eb/N0 = SNR + 10 log10(B / bit rate),   bit rate = 8 / byte_time
 
     Args:
         dt: [s] not used.
@@ -87,10 +97,12 @@ def medium_of(
         source_level_db: [dB] re 1 uPa at 1 m; modems of one network are alike.
         frequency: [Hz] in the middle of the band.
         bandwidth: [Hz] B.
-        half_db: [dB] signal to noise at which half of the packets are lost.
+        half_db: [dB] signal to noise, both in the band, at which half of the packets are lost; of the logistic curve.
         width_db: [dB] of that slope.
+        packet_errors: [-] which curve: `logistic` (0), or `fsk` (1), which is theory and needs no numbers.
         capture_db: [dB] by which a packet must be stronger than one that overlaps it; a large one: both are lost.
         spreading: [-] k of k 10 log10(r): 2 spherical, 1.5 the usual compromise.
+        absorption: [-] which formula: `francois_garrison` (0), or `ainslie_mccolm` (1), which is simpler.
         sound_speed: [m/s] c; 0: from temperature, salinity and water_depth.
         temperature_celsius: [-] deg C.
         salinity: [-] practical.
@@ -106,6 +118,7 @@ def medium_of(
     Returns:
         The numbers.
     """
+    absorb = ainslie_mccolm if absorption > HALF else francois_garrison
     noise = ambient_noise(frequency, shipping, wind_speed) + DECIBEL * float(log(bandwidth)) + platform_noise_db
     return Medium(
         overhead,
@@ -113,12 +126,14 @@ def medium_of(
         frame,
         processing,
         sound_speed if sound_speed > 0.0 else mackenzie(temperature_celsius, salinity, water_depth),
-        francois_garrison(frequency, temperature_celsius, salinity, water_depth, acidity),
+        absorb(frequency, temperature_celsius, salinity, water_depth, acidity),
         spreading,
         source_level_db,
         noise,
         half_db,
         width_db,
+        packet_errors,
+        DECIBEL * float(log(bandwidth * byte_time / 8.0)),
         loss,
         burst,
         max_range,
