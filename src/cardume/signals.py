@@ -154,13 +154,13 @@ class ShaftReading(NamedTuple):
 class Fix(NamedTuple):
     """A measured position, some time after it was valid; or only the distance from where it was measured."""
 
-    north: float = NOTHING  # [m] of the vehicle; where `range` is a number, of the one who measured it
+    north: float = NOTHING  # [m] of the vehicle; where `level_range` is a number, of the one who measured it
     east: float = NOTHING  # [m]
     age: float = NOTHING  # [s] since it was valid
     north_variance: float = NOTHING  # [m^2] NaN: not told
     covariance: float = NOTHING  # [m^2] of north with east
     east_variance: float = NOTHING  # [m^2]
-    range: float = NOTHING  # [m] level; NaN: north and east are the vehicle's
+    level_range: float = NOTHING  # [m] horizontal distance; NaN: north and east are the vehicle's
 
 
 class Motion(NamedTuple):
@@ -329,11 +329,12 @@ class Sighting(NamedTuple):
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when that was; NaN: no fix
     coordination_state: float = NOTHING  # [m]
-    path_speed: float = NOTHING  # [m/s]
+    path_speed: float = NOTHING  # [m/s] NaN: not told, v_L stands in
     time_of_validity: float = NOTHING  # [s] of the coordination state; NaN: not known
     phase: float = 4.0  # [-] of its mission
-    north_variance: float = NOTHING  # [m^2] of where it was
+    north_variance: float = NOTHING  # [m^2] of north and east
     covariance: float = NOTHING  # [m^2] of north with east
     east_variance: float = NOTHING  # [m^2]
     range: float = NOTHING  # [m] slant; NaN: north and east are the vehicle's
+    range_variance: float = NOTHING  # [m^2]
     depth: float = NOTHING  # [m] of the one who saw it

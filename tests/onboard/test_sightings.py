@@ -1,7 +1,12 @@
 """A vehicle with a USBL head goes by what it sees, also where the other never speaks."""
 
-import numpy as np
+import math
 
+import numpy as np
+import pytest
+
+from cardume.onboard.navigation import _fix_told
+from cardume.signals import Sighting
 from flying import fly_text
 
 SILENT = """
@@ -55,3 +60,30 @@ def test_a_diver_that_rounded_a_bend_unseen_is_found_on_its_leg() -> None:
     rows = flight.times >= 142.0
     assert true[rows].min() > 30.0 + 10.0 * np.pi + 5.0
     assert np.abs(believed - true)[rows].max() < 1.0
+
+
+@pytest.mark.parametrize(("level", "below"), [(30.0, 0.0), (12.0, 9.0), (5.0, 20.0), (40.0, -9.0)])
+def test_a_slant_range_that_is_made_level_errs_by_its_slope(level: float, below: float) -> None:
+    """dh = (r / h) dr: the spread of the level range over many noisy readings is the variance that is told."""
+    sigma, head, own = 0.02, 3.0, 0.25
+    slant = math.hypot(level, below)
+    draws = slant + sigma * np.random.default_rng(9).normal(size=20_000)
+    found = []
+    for reading in draws:
+        seen = Sighting(1.0, 2.0, 10.0, north_variance=own, covariance=0.1, east_variance=2.0 * own)
+        seen = seen._replace(range=reading, range_variance=sigma * sigma, depth=head)
+        fix = _fix_told(seen, head + below, 11.0)
+        found.append(fix.level_range)
+    assert fix.age == 1.0
+    assert np.mean(found) == pytest.approx(level, rel=1e-3)
+    told = fix.north_variance - own
+    assert math.sqrt(told) == pytest.approx(np.std(found), rel=0.03)
+    assert fix.east_variance - 2.0 * own == pytest.approx(told)
+    assert fix.covariance == 0.1
+
+
+def test_a_position_is_told_as_it_is() -> None:
+    seen = Sighting(1.0, 2.0, 10.0, 5.0, 0.5, 10.0, 4.0, 0.3, 0.1, 0.4)
+    fix = _fix_told(seen, 7.0, 10.5)
+    assert fix[:6] == (1.0, 2.0, 0.5, 0.3, 0.1, 0.4)
+    assert math.isnan(fix.level_range)

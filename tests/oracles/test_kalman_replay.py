@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import replace
-from itertools import product
+from itertools import product, zip_longest
 
 import numpy as np
 import pytest
 from scipy.linalg import expm, solve_discrete_are
 from scipy.stats import t as student
 
+from cardume.errors import LawError
 from cardume.laws import laws_of
 from cardume.onboard.estimation.position.belief import Covariance, Mean, Moment
 from cardume.onboard.estimation.position.dead_reckoning import way_through_water
@@ -328,13 +329,13 @@ def test_covariance_grows_as_the_errors_of_dead_reckoning(sigma, time_constant):
 STILL = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def still(places, **numbers):
-    """A vehicle that lies still; a fix every tenth tick, each of 1 m^2; estimates at those ticks."""
+def still(places, ranges=(), **numbers):
+    """A vehicle that lies still; a fix, or a range from there, every tenth tick, of 1 m^2; what it then believes."""
     memory = Replayed(*[np.array(v) if np.ndim(v) else v for v in Replayed()])
     found = []
-    for north, east in places:
+    for (north, east), level_range in zip_longest(places, ranges, fillvalue=math.nan):
         for tick in range(10):
-            fix = Fix(north, east, 0.0, 1.0, 0.0, 1.0) if tick == 9 else Fix()
+            fix = Fix(north, east, 0.0, 1.0, 0.0, 1.0, level_range) if tick == 9 else Fix()
             estimate, memory = KALMAN(fix, STILL, memory, 0.1, **numbers)
         found.append(estimate)
     return found
@@ -358,6 +359,41 @@ def test_the_gate_opens_with_every_fix_that_was_not_believed():
     assert all(abs(e.north) < 1e-9 for e in far[30:35])
     assert far[35].north == pytest.approx(200.0, abs=0.01)
     assert far[35].north_variance == pytest.approx(1.0, rel=0.01)
+
+
+def test_a_range_alone_does_not_restart_a_lost_filter():
+    """Ranges put it 200 m away: it is not drawn onto their source, and the first position brings it home."""
+    good, far = (0.0, 0.0), (30.0, 40.0)  # of the source, 50 m away; the ranges say 210 m
+    lost = still([*[good] * 30, *[far] * 12], ranges=[math.nan] * 30 + [210.0] * 12)
+    assert all(abs(e.north) < 1e-6 and abs(e.east) < 1e-6 for e in lost[30:37])
+    assert min(math.dist((e.north, e.east), far) for e in lost) > 45.0
+    found = still([*[good] * 30, *[far] * 7, (-96.0, -128.0)], ranges=[math.nan] * 30 + [210.0] * 7 + [math.nan])
+    assert (found[-1].north, found[-1].east) == pytest.approx((-96.0, -128.0), abs=0.01)
+    assert found[-1].north_variance == pytest.approx(1.0, rel=0.01)
+
+
+def test_patience_is_one_at_least():
+    """With 0 every fix would be believed and the filter started again at each: the last fix, not a filter."""
+    with pytest.raises(LawError, match="patience = 0"):
+        KALMAN.gains(0.1, patience=0.0)
+    patient = still([*[(0.0, 0.0)] * 30, *[(200.0, 0.0)] * 2], patience=1.0)
+    assert abs(patient[30].north) < 1e-9
+    assert patient[31].north == pytest.approx(200.0, abs=0.01)
+
+
+def test_a_fix_whose_time_was_rounded_up_is_one_of_now():
+    """An age below zero is none: nothing is read from a place of the memory that is not written yet."""
+    motions = scenario(4, count=300)[0]
+    fixes = [(tick, np.array([5.0, 5.0])) for tick in range(20, 300, 30)]
+    ends = []
+    for age in (0.0, -0.15):
+        memory = Replayed(*[np.array(v) if np.ndim(v) else v for v in Replayed()])
+        told = dict(fixes)
+        for tick, motion in enumerate(motions):
+            fix = Fix(*told[tick], age, 1.0, 0.0, 1.0) if tick in told else Fix()
+            estimate, memory = KALMAN(fix, motion, memory, 0.1, **NUMBERS)
+        ends.append(estimate)
+    assert ends[0] == ends[1]
 
 
 def test_numbers_that_are_none_are_no_fix():

@@ -172,10 +172,13 @@ def test_a_rigid_lawnmower_can_be_observed():
 
 @pytest.mark.parametrize("bearing_loss", [1.0, 0.7])
 def test_covariance_by_ranges_is_that_of_the_errors(bearing_loss):
-    """A lawnmower by ranges only, or where most readings have lost their bearing: ANEES is 1.3 and 1.1."""
+    """A lawnmower by ranges only, or where most readings have lost their bearing: ANEES is 1.08 and 1.04.
+
+    The head is 9 m beside and 8 m above: a variance that is not made level with its range would give 1.3.
+    """
     runs, diver = flown(MOWER, 60, bearing_loss=bearing_loss)
     found = np.array([late_half(nees_of(flight, diver)).mean() for flight in runs])
     limit = student.ppf(0.999, len(found) - 1) * found.std(ddof=1) / math.sqrt(len(found))
     print(f"ANEES {found.mean():.3f} of 1 +- {limit:.3f}")
-    assert 0.8 < found.mean() < 1.5  # so near its source an extended filter is somewhat too sure
-    assert limit < 0.4
+    assert abs(found.mean() - 1.0) < limit
+    assert limit < 0.25

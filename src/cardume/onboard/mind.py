@@ -60,12 +60,20 @@ class Datasheet(NamedTuple):
 
 
 class Grid(NamedTuple):
-    """What is left of numbers that are sent in few bits: multiples of these; 0: they are sent as they are."""
+    """What is left of numbers that are sent in few bits: low + k step, k a whole number from 0 to `last`."""
 
-    position: float = 0.0  # [m]
-    state: float = 0.0  # [m]
-    path_speed: float = 0.0  # [m/s]
-    time: float = 0.0  # [s]
+    time_step: float = 0.0  # [s] of a message's time
+    age_step: float = 0.0  # [s] of a sighting's age, from 0
+    age_last: float = 0.0  # [-]
+    position_low: float = 0.0  # [m]
+    position_step: float = 0.0  # [m]
+    position_last: float = 0.0  # [-]
+    state_low: float = 0.0  # [m]
+    state_step: float = 0.0  # [m]
+    state_last: float = 0.0  # [-]
+    path_speed_low: float = 0.0  # [m/s]
+    path_speed_step: float = 0.0  # [m/s]
+    path_speed_last: float = 0.0  # [-]
 
 
 class Orders(NamedTuple):
@@ -163,7 +171,7 @@ class News(NamedTuple):
     """What was last learnt of how far along the formation another vehicle is."""
 
     state: float = NOTHING  # [m] its coordination state
-    path_speed: float = 0.0  # [m/s] and the rate of that
+    path_speed: float = 0.0  # [m/s] and the rate of that; NaN: not told, v_L stands in
     time_of_validity: float = LONG_AGO  # [s]
     phase: float = UNTOLD  # [-] the latest of its mission that it said
 
@@ -187,10 +195,11 @@ class LastSeen(NamedTuple):
     north: float = NOTHING  # [m] of the vehicle; where `range` is a number, of the one who saw it
     east: float = NOTHING  # [m]
     time_of_fix: float = NOTHING  # [s] when
-    north_variance: float = NOTHING  # [m^2]
+    north_variance: float = NOTHING  # [m^2] of north and east
     covariance: float = NOTHING  # [m^2] of north with east
     east_variance: float = NOTHING  # [m^2]
     range: float = NOTHING  # [m] slant; NaN: north and east are the vehicle's
+    range_variance: float = NOTHING  # [m^2]
     depth: float = NOTHING  # [m] of the one who saw it
 
 

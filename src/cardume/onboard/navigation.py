@@ -44,6 +44,7 @@ from cardume.signals import (
 )
 
 SAME = 1e-6  # [s] a fix is newer only beyond rounding
+FLATTEST = 1e-4  # [-] least square of the level part of a range over that of the range
 NEAREST_CENTER = 0.1  # of 1 - c e: nearer the centre of an arc the path's rate has no meaning
 
 
@@ -152,18 +153,24 @@ def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, depth: float, time: float
 
 @compiled
 def _fix_told(seen: Sighting, depth: float, time: float) -> Fix:
-    """A sighting as a fix; of a slant range the level part, at least a hundredth of it.  None is of the future."""
+    """A sighting as a fix; of a slant range the level part, at least a hundredth of it, with the variance of that.
+
+    h = sqrt(r^2 - z^2), so dh = (r / h) dr: the steeper a range, the less it tells of the level distance.  No fix is of
+    the future.
+    """
     age = time - seen.time_of_fix
     below, slant = where(seen.depth == seen.depth, depth - seen.depth, depth), seen.range * seen.range
-    level = slant - where(depth == depth, below * below, 0.0)
+    rest = slant - where(depth == depth, below * below, 0.0)
+    level = where(rest < FLATTEST * slant, FLATTEST * slant, rest)
+    of_range = where(seen.range == seen.range, seen.range_variance * slant / level, 0.0)
     return Fix(
         seen.north,
         seen.east,
         where(age < -SAME, 0.0, age),
-        seen.north_variance,
+        seen.north_variance + of_range,
         seen.covariance,
-        seen.east_variance,
-        sqrt(where(level < 1e-4 * slant, 1e-4 * slant, level)),
+        seen.east_variance + of_range,
+        sqrt(level),
     )
 
 

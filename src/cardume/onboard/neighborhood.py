@@ -133,6 +133,7 @@ def bring_up_to_date(mind: Mind, vehicle: int, error: PathError, time: float) ->
     nominal, expected = pace_of_neighbor(mind, outlook, error, time), outlook.correction
     is_known = news.state == news.state
     path_speed = news.path_speed + pace_gained(mind, news.time_of_validity, time)
+    path_speed = where(path_speed == path_speed, path_speed, nominal)
     if load(mind.features, HAS_PHASES) > 0:
         waits = is_waiting(news.phase) & has_told(news.phase)
         nominal, expected = where(waits, 0.0, nominal), where(waits, 0.0, expected)

@@ -51,7 +51,7 @@ def look_around(
             north = north + position.north - age * (motion.north + motion.current_north)
             east = east + position.east - age * (motion.east + motion.current_east)
             nothing = NOTHING * age
-            seen = LastSeen(north, east, time - age, spread.nn, spread.ne, spread.ee, nothing, nothing)
+            seen = LastSeen(north, east, time - age, spread.nn, spread.ne, spread.ee, nothing, nothing, nothing)
             has_bearing = is_new & (load(reading, 1) == load(reading, 1))
             sight(mind, vehicle, has_bearing, seen, error)
             is_range = is_new & negate(has_bearing)
@@ -72,7 +72,7 @@ def range_from(
 ) -> LastSeen:
     """What is left of a reading without a bearing: from where how far away a vehicle was.
 
-    Its variances are those of the own position and of the range together.
+    How the own position and how the range errs are told apart: who knows its depth makes the range level first.
 
     Args:
         mind: of the one who measured.
@@ -85,15 +85,15 @@ def range_from(
     """
     told = get_datasheet(mind.own, 0)
     own, known = told.gnss * told.gnss, position.north_variance == position.north_variance
-    more = told.range * told.range
     return LastSeen(
         position.north - age * (motion.north + motion.current_north),
         position.east - age * (motion.east + motion.current_east),
         time - age,
-        where(known, position.north_variance, own) + more,
+        where(known, position.north_variance, own),
         where(known, position.covariance, 0.0),
-        where(known, position.east_variance, own) + more,
+        where(known, position.east_variance, own),
         distance,
+        told.range * told.range,
         measured.depth,
     )
 

@@ -3,15 +3,15 @@
 from typing import NamedTuple
 
 from cardume.compiler import Rows, compiled, load, where
-from cardume.maths import floor
 from cardume.onboard.messaging import decide_to_send
+from cardume.onboard.messaging.polling import asked_in_turn
+from cardume.onboard.messaging.rounding import rounded_report
 from cardume.onboard.mind import (
     ANSWERS,
     FORESEES,
     NEVER,
     ROUNDS,
     Fresh,
-    Grid,
     Mind,
     News,
     Speech,
@@ -29,7 +29,7 @@ from cardume.onboard.mind import (
     put_news,
     put_speech,
 )
-from cardume.signals import NOTHING, Forecast, Outbox, Question, Report, Sighting
+from cardume.signals import NOTHING, Forecast, Outbox, Question, Report
 
 
 class Said(NamedTuple):
@@ -94,53 +94,6 @@ def next_to_answer(mind: Mind, sequence: float) -> float:
     """
     asks = 0.0 * sequence - 1.0
     if load(mind.features, ANSWERS) > 0 and mind.size > 1:
-        others = mind.size - 1.0
-        turn = sequence - others * floor(sequence / others)
-        other = where(turn < 1.0 * mind.me, turn, turn + 1.0)
-        asks = where(get_setup(mind.own, 0).shares_sightings > 0.5, other, asks)
+        turn = asked_in_turn(sequence, 1.0 * mind.me, 1.0 * mind.size)
+        asks = where(get_setup(mind.own, 0).shares_sightings > 0.5, turn, asks)
     return asks
-
-
-@compiled
-def rounded(value: float, step: float) -> float:
-    """The multiple of a step that is nearest to a number.
-
-    Args:
-        value: [any]
-        step: [any] 0: the number itself.
-    """
-    return where(step > 0.0, step * floor(value / where(step > 0.0, step, 1.0) + 0.5), value)
-
-
-@compiled
-def rounded_report(told: Report, grid: Grid) -> Report:
-    """A report as it is after its way through few bits."""
-    return Report(
-        told.sending,
-        told.sequence,
-        told.time_of_validity,
-        rounded(told.coordination_state, grid.state),
-        rounded(told.path_speed, grid.path_speed),
-        told.phase,
-        told.asks,
-    )
-
-
-@compiled
-def rounded_sighting(seen: Sighting, grid: Grid) -> Sighting:
-    """A sighting as it is after its way through few bits, which say nothing of errors, nor of a range alone."""
-    unsaid, is_range = NOTHING * seen.north, seen.range == seen.range
-    return Sighting(
-        where(is_range, NOTHING, rounded(seen.north, grid.position)),
-        where(is_range, NOTHING, rounded(seen.east, grid.position)),
-        where(is_range, NOTHING, rounded(seen.time_of_fix, grid.time)),
-        rounded(seen.coordination_state, grid.state),
-        rounded(seen.path_speed, grid.path_speed),
-        rounded(seen.time_of_validity, grid.time),
-        seen.phase,
-        unsaid,
-        unsaid,
-        unsaid,
-        unsaid,
-        unsaid,
-    )

@@ -7,6 +7,7 @@ sources) knows when the message of each slot arrives.
 from cardume.compiler import Rows, at, compiled, load, negate, some, store, where
 from cardume.maths import hypot
 from cardume.maths.random import Key, uniforms
+from cardume.onboard.messaging.rounding import rounded_sighting
 from cardume.onboard.mind import (
     FLAG,
     HEAD,
@@ -20,7 +21,7 @@ from cardume.onboard.mind import (
     put_head,
     put_seen,
 )
-from cardume.onboard.telling import Said, rounded_sighting
+from cardume.onboard.telling import Said
 from cardume.signals import NOTHING, Link, Sighting
 from cardume.simulation.contention import contend
 from cardume.simulation.faults import intrude, is_faulty, record_packet
@@ -115,10 +116,11 @@ def speak(fleet: Fleet, sender: int, said: Said, time: float) -> None:
                 where_seen.covariance,
                 where_seen.east_variance,
                 where_seen.range,
+                where_seen.range_variance,
                 where_seen.depth,
             )
             if load(features_of(fleet, sender), ROUNDS) > 0:
-                seen = rounded_sighting(seen, get_grid(fleet.minds, sender))
+                seen = rounded_sighting(seen, said.report.time_of_validity, get_grid(fleet.minds, sender))
             put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
         note_sent(fleet, sender, sends)
         if fleet.faults.num > 0:
@@ -143,14 +145,14 @@ def transmit(fleet: Fleet, sender: int, listener: int, link: int, time: float, n
     """One message on its way to one listener; each pair of vehicles has its own draws."""
     sends = load(fleet.air.sending, sender) > 0.5
     here, there = get_vessel(fleet.vehicles, sender), get_vessel(fleet.vehicles, listener)
-    level = hypot(there.north - here.north, there.east - here.east)
+    level_distance = hypot(there.north - here.north, there.east - here.east)
     own, others = key_of(fleet, listener, LINK), key_of(fleet, sender, LINK)
     pair = Key(own.seed_low, own.seed_high, own.stream, own.vehicle_low, others.vehicle_low)
     draw_1, draw_2, _, _ = uniforms(pair, now)
-    payload = 0.0 * level
+    payload = 0.0 * level_distance
     if fleet.air.is_shared > 0:
         payload = get_medium(fleet.air.modems, sender).payload
-    slant = Link(hypot(level, there.depth - here.depth), draw_1, draw_2, time, payload, where(sends, 1.0, 0.0))
+    slant = Link(hypot(level_distance, there.depth - here.depth), draw_1, draw_2, time, payload, where(sends, 1.0, 0.0))
     arrival = propagate(book_of(fleet, listener, fleet.tick), sender, slant)
     delivered = arrival.delivered > 0.5
     if fleet.faults.num > 0:

@@ -1,10 +1,11 @@
 """Messages in few bits: numbers with a range and a resolution, packed one after the other.
 
-Plain Python, for programs on real vehicles; the simulation needs only the sizes and the rounding.
+Plain Python, for programs on real vehicles; the simulation needs only the sizes and the rounding, rounding.py, which
+is the codec's too.
 
 A packet: kind 2, sender 6, sequence 8, time 8 bits, then the sender's own state, then a sighting of each other vehicle
 in seven bytes.  Sequence and time are sent modulo 256 and 25.6 s, and made whole again by whoever knows roughly what
-they are.
+they are.  A question is a kind of its own; whom it asks follows from its number.
 """
 
 import math
@@ -12,13 +13,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from cardume.errors import InputError
+from cardume.onboard.messaging.polling import asked_in_turn
+from cardume.onboard.messaging.rounding import rounded_report, rounded_sighting
 from cardume.onboard.mind import UNTOLD, Grid
 from cardume.onboard.phases import PHASES
 from cardume.signals import NOTHING, Report, Sighting
 
-KIND, KIND_BITS, SENDER_BITS, SEQUENCE_BITS, TIME_BITS = 1, 2, 6, 8, 8
+STATEMENT, QUESTION = 1, 2  # kinds
+KIND_BITS, SENDER_BITS, SEQUENCE_BITS, TIME_BITS = 2, 6, 8, 8
 PHASE_BITS = 3
 TIME_STEP = 0.1  # [s] of a message's time
+CLOCK_SLACK = 0.5  # [s] by which the sender's clock may be ahead of the receiver's
 MOST_SENDERS = 2**SENDER_BITS
 
 
@@ -43,7 +48,12 @@ class Range:
     @property
     def high(self) -> float:
         """The largest number that can be said."""
-        return self.low + self.step * (2**self.bits - 2)
+        return self.low + self.step * self.last
+
+    @property
+    def last(self) -> float:
+        """How many steps the largest is above the smallest [-]."""
+        return float(2**self.bits - 2)
 
     @property
     def nothing(self) -> int:
@@ -104,7 +114,10 @@ class Dictionary:
     @property
     def grid(self) -> Grid:
         """What is left of the numbers."""
-        return Grid(self.position.step, self.state.step, self.path_speed.step, self.age.step)
+        position, state, speed = (
+            (each.low, each.step, each.last) for each in (self.position, self.state, self.path_speed)
+        )
+        return Grid(TIME_STEP, self.age.step, self.age.last, *position, *state, *speed)
 
     def size(self, sightings: int) -> int:
         """Bytes of a packet.
@@ -156,7 +169,7 @@ class Packet:
 
 
 def encode(sender: int, report: Report, sightings: Sequence[Sighting] = (), dictionary: Dictionary = COMPACT) -> bytes:
-    """Pack a message.
+    """Pack a message; what it says is rounded, and left out where it is too old or out of range.
 
     Args:
         sender: [-] number of the vehicle, below 64.
@@ -168,19 +181,38 @@ def encode(sender: int, report: Report, sightings: Sequence[Sighting] = (), dict
         The packet.
 
     Raises:
-        PacketError: a number outside its range.
+        PacketError: a sender, number, time or question that no packet can say.
     """
     if not 0 <= sender < MOST_SENDERS:
         raise PacketError(f"sender = {sender} cannot be sent: it must be 0 to {MOST_SENDERS - 1}")
+    for name in ("sequence", "time_of_validity", "phase"):
+        if not math.isfinite(value := getattr(report, name)):
+            raise PacketError(f"{name} = {value:g} cannot be sent: it must be a number")
+    if report.asks not in (-1.0, turn := _asked(report.sequence, sender, len(sightings))):
+        raise PacketError(
+            f"asks = {report.asks:g} cannot be sent: question {report.sequence:g} of vehicle {sender}, which tells of"
+            f" {len(sightings)} others, asks vehicle {turn:g}"
+        )
+    told = rounded_report(report, dictionary.grid)
     out = _Writer()
-    out.put(KIND, KIND_BITS)
+    out.put(STATEMENT if told.asks < 0.0 else QUESTION, KIND_BITS)
     out.put(sender, SENDER_BITS)
-    out.put(round(report.sequence) % 2**SEQUENCE_BITS, SEQUENCE_BITS)
-    out.put(round(report.time_of_validity / TIME_STEP) % 2**TIME_BITS, TIME_BITS)
-    _put_state(out, report.coordination_state, report.path_speed, report.phase, dictionary)
+    out.put(round(told.sequence) % 2**SEQUENCE_BITS, SEQUENCE_BITS)
+    out.put(whole_ticks(told.time_of_validity) % 2**TIME_BITS, TIME_BITS)
+    _put_state(out, told.coordination_state, told.path_speed, told.phase, dictionary)
     for seen in sightings:
-        _put_sighting(out, seen, report.time_of_validity, dictionary)
+        _put_sighting(out, rounded_sighting(seen, told.time_of_validity, dictionary.grid), told, dictionary)
     return out.to_bytes()
+
+
+def whole_ticks(time: float) -> int:
+    """A time [s] in whole steps of 0.1 s, of which a packet says the last eight bits."""
+    return math.floor(time / TIME_STEP + 0.5)
+
+
+def _asked(sequence: float, sender: int, others: int) -> float:
+    """Whom a question asks; -1 where it tells of nobody, who could be asked."""
+    return asked_in_turn(sequence, float(sender), others + 1.0) if others else -1.0
 
 
 def _put_state(out: _Writer, state: float, path_speed: float, phase: float, dictionary: Dictionary) -> None:
@@ -189,18 +221,12 @@ def _put_state(out: _Writer, state: float, path_speed: float, phase: float, dict
     out.put(max(0, round(phase)) % len(PHASES), PHASE_BITS)
 
 
-def _put_sighting(out: _Writer, seen: Sighting, time: float, dictionary: Dictionary) -> None:
-    """One age for both: the state is brought to the time of the fix by its speed; a range alone is not told."""
-    has_fix = not math.isnan(seen.time_of_fix) and math.isnan(seen.range)
-    valid = seen.time_of_fix if has_fix else seen.time_of_validity
-    age = time - valid
-    if not 0.0 <= age <= dictionary.age.high + 0.5 * dictionary.age.step:
-        seen, age = Sighting(), NOTHING  # too old to be told
-    at_fix = seen.coordination_state + seen.path_speed * (valid - seen.time_of_validity)
-    out.put(dictionary.position.encode(seen.north if has_fix else NOTHING, "north"), dictionary.position.bits)
-    out.put(dictionary.position.encode(seen.east if has_fix else NOTHING, "east"), dictionary.position.bits)
-    out.put(dictionary.age.encode(min(age, dictionary.age.high), "age"), dictionary.age.bits)
-    _put_state(out, at_fix, seen.path_speed, seen.phase, dictionary)
+def _put_sighting(out: _Writer, seen: Sighting, told: Report, dictionary: Dictionary) -> None:
+    """A rounded sighting; no path speed means that the vehicle's phase is not known."""
+    out.put(dictionary.position.encode(seen.north, "north"), dictionary.position.bits)
+    out.put(dictionary.position.encode(seen.east, "east"), dictionary.position.bits)
+    out.put(dictionary.age.encode(told.time_of_validity - seen.time_of_validity, "age"), dictionary.age.bits)
+    _put_state(out, seen.coordination_state, seen.path_speed, seen.phase, dictionary)
 
 
 def decode(data: bytes, time: float, last_sequence: float = 0.0, dictionary: Dictionary = COMPACT) -> Packet:
@@ -208,7 +234,7 @@ def decode(data: bytes, time: float, last_sequence: float = 0.0, dictionary: Dic
 
     Args:
         data: as it came; of a packet with a code, what stands before the code.
-        time: [s] now; the packet was sent less than 25 s before.
+        time: [s] now; the packet was sent less than 25 s before, by a clock at most 0.5 s ahead of this one.
         last_sequence: [-] the last that was read of this sender.
         dictionary: how numbers are sent.
 
@@ -223,13 +249,15 @@ def decode(data: bytes, time: float, last_sequence: float = 0.0, dictionary: Dic
     if not data or count < 0 or dictionary.size(count) != len(data):
         raise PacketError(f"{len(data)} bytes are no packet: one has {dictionary.size(0)}, {dictionary.size(1)}, ...")
     read = _Reader(data)
-    if read.take(KIND_BITS) != KIND:
+    kind = read.take(KIND_BITS)
+    if kind not in (STATEMENT, QUESTION):
         raise PacketError("not a packet of this kind")
     sender = read.take(SENDER_BITS)
     sequence = whole_sequence(read.take(SEQUENCE_BITS), last_sequence)
-    valid = _latest(read.take(TIME_BITS) * TIME_STEP, time)
+    valid = TIME_STEP * whole_time(read.take(TIME_BITS), time)
     state, speed, phase = _take_state(read, dictionary)
-    report = Report(1.0, sequence, valid, state, speed, phase)
+    asks = _asked(sequence, sender, count) if kind == QUESTION else -1.0
+    report = Report(1.0, sequence, valid, state, speed, phase, asks)
     others = [_take_sighting(read, valid, dictionary) for _ in range(count)]
     if read.value & (1 << read.left) - 1:
         raise PacketError("bits after the end of the packet")
@@ -249,10 +277,15 @@ def whole_sequence(low: int, last: float) -> float:
     return float(max(low, expected + (low - expected + cycle // 2) % cycle - cycle // 2))
 
 
-def _latest(low: float, time: float) -> float:
-    """The latest time that is not after now and has this remainder."""
-    cycle = 2**TIME_BITS * TIME_STEP
-    return low + cycle * math.floor((time - low) / cycle + 1e-9)
+def whole_time(low: int, time: float) -> int:
+    """A time in steps of 0.1 s, of which the last eight bits are known: the latest one that is not after now.
+
+    Args:
+        low: [-] its last eight bits.
+        time: [s] now.
+    """
+    cycle, latest = 2**TIME_BITS, whole_ticks(time + CLOCK_SLACK)
+    return low + cycle * ((latest - low) // cycle)
 
 
 def _take_state(read: _Reader, dictionary: Dictionary) -> tuple[float, float, float]:
@@ -266,7 +299,6 @@ def _take_sighting(read: _Reader, valid: float, dictionary: Dictionary) -> Sight
     east = dictionary.position.decode(read.take(dictionary.position.bits))
     age = dictionary.age.decode(read.take(dictionary.age.bits))
     state, speed, phase = _take_state(read, dictionary)
-    is_told = not (math.isnan(state) and math.isnan(north))
     seen = valid - age
     fixed = seen if not math.isnan(north) else NOTHING
-    return Sighting(north, east, fixed, state, speed, seen, phase if is_told else UNTOLD)
+    return Sighting(north, east, fixed, state, speed, seen, UNTOLD if math.isnan(speed) else phase)

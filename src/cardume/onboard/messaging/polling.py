@@ -1,9 +1,26 @@
 """Speak when asked: the vehicle with the USBL head asks the others in turn, and each answers."""
 
-from cardume.compiler import where
+from cardume.compiler import compiled, where
 from cardume.laws import Meters, NotNegative, Positive, Seconds
+from cardume.maths import floor
 from cardume.onboard.messaging.base import messaging_law
 from cardume.signals import Outbox, Question
+
+SAID = 256.0  # of a sequence number only the remainder is in a packet
+
+
+@compiled
+def asked_in_turn(sequence: float, place: float, size: float) -> float:
+    """Place of the vehicle that a question asks [-], by its number: so the packet need not say it.
+
+    Args:
+        sequence: [-] of the question; all that have the same last eight bits ask the same vehicle.
+        place: [-] of the one who asks, by name, from 0.
+        size: [-] vehicles in the fleet, at least 2.
+    """
+    number, others = sequence - SAID * floor(sequence / SAID), size - 1.0
+    turn = number - others * floor(number / others)
+    return where(turn < place, turn, turn + 1.0)
 
 
 @messaging_law

@@ -50,4 +50,5 @@ def forged_sighting(seen: Sighting, vessel: VesselState, state: float, time: flo
         seen.east_variance,
         nothing,
         nothing,
+        nothing,
     )

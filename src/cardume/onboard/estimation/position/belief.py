@@ -7,13 +7,14 @@ the way d = (dn, de) through the water, and
     p' = p + d + G (s, b) + g c + w,   c' = phi c + w_c,   (s, b)' = (s, b) + w_a,
     G = [[dn, -de], [de, dn]],   phi = exp(-f T),   g = (1 - phi) / f  (T where f = 0)
 
-which is linear in the state and holds for any T: nothing needs to be computed in between.  Its
-covariance is kept as blocks of two by two.
+which is linear in the state and holds for any T: nothing needs to be computed in between.  The variances
+of the calibration grow by what they were at first in an hour; what that makes of the way inside one T is left out.
+The covariance is kept as blocks of two by two.
 """
 
 from typing import NamedTuple
 
-from cardume.compiler import compiled, some, where
+from cardume.compiler import compiled, negate, some, where
 from cardume.maths import exp, hypot
 from cardume.maths.blocks import (
     UNIT,
@@ -29,7 +30,7 @@ from cardume.maths.blocks import (
 )
 from cardume.signals import Fix
 
-CALIBRATION_HOLDS = 3600.0  # [s] in which calibration is thought to drift by as much as it was uncertain at first
+CALIBRATION_HOLDS = 3600.0  # [s] in which the variances of the calibration grow by what they were at first
 UNKNOWN = 1e6  # [m^2] variance of a position of which nothing is known
 EXACT = 1e-6  # [m^2] no fix is better than a millimeter
 NEAREST = 1e-3  # [m] a source nearer than this has no direction
@@ -113,7 +114,7 @@ class Doubts(NamedTuple):
     fading: float  # [1/s] f, at which the current is forgotten
     fix: float  # [m^2] variance of a fix that does not tell its own
     gate: float  # [-] largest believable squared innovation over its variance
-    patience: float  # [-] fixes in a row that are not believed before the filter gives up what it believed itself
+    patience: float  # [-] fixes in a row that are not believed, at least 1, before a position restarts the filter
 
 
 class Innovation(NamedTuple):
@@ -249,19 +250,21 @@ def _grown(time: float, doubts: Doubts) -> tuple[float, float, Spread]:
 def corrected(belief: Belief, fix: Fix, doubts: Doubts) -> Belief:
     """What a fix makes of the belief at the moment of its validity.
 
-    y = z - p,   S = P_pp + R,   x' = x + K y,   P' = P - K S K^T,   K = P H^T S^-1
+    y = z - p,   S = P_pp + R,   x' = x + K y,   P' = P - K S K^T,   K = P H^T S^-1;   of a range see `_ranged`
 
     A fix whose y^T S^-1 y exceeds gate (1 + k)^2, k the fixes before it in a row that were not believed either, is not
     believed.  After `patience` of them in a row the position is taken for unknown and the current for as uncertain as
-    at first, and the next fix is believed.
+    at first when the next position comes, and that is believed whatever it is.  A range alone never is: around its
+    source it leaves all directions open, and no mean stands for a circle.
 
     Args:
         belief: at that moment.
-        fix: position and its covariance.
-        doubts: the gate, and the variance of a fix that does not tell its own.
+        fix: a position or a level range, and its covariance.
+        doubts: the gate, the patience, and the variance of a fix that does not tell its own.
     """
     was, mean, before = belief.moment, belief.mean, _blocks(belief.covariance)
-    lost = was.rejected >= doubts.patience
+    is_position = negate(fix.level_range == fix.level_range)
+    lost = is_position & (was.rejected >= doubts.patience)
     pp = plus(before.pp, where(lost, UNKNOWN, 0.0), UNIT)
     cc = plus(before.cc, where(lost, doubts.current, 0.0), UNIT)
     seen = _seen(fix, mean, pp, doubts)
@@ -296,7 +299,7 @@ def _seen(fix: Fix, mean: Mean, pp: Block, doubts: Doubts) -> Innovation:
     """How far a fix is from what was believed, and the inverse of the covariance of that."""
     noise = _noise_of(fix, doubts)
     place = Innovation(fix.north - mean.north, fix.east - mean.east, inverted(plus(pp, 1.0, noise)))
-    is_range = fix.range == fix.range
+    is_range = fix.level_range == fix.level_range
     if some(is_range):
         ranged = _ranged(fix, mean, pp, noise)
         place = Innovation(
@@ -324,7 +327,7 @@ def _ranged(fix: Fix, mean: Mean, pp: Block, noise: Block) -> Innovation:
     across = pp.nn * e * e - 2.0 * pp.ne * n * e + pp.ee * n * n
     more = 0.5 * across / h
     along = n * n * (pp.nn + noise.nn) + 2.0 * n * e * (pp.ne + noise.ne) + e * e * (pp.ee + noise.ee)
-    odd, weight = fix.range - distance - more, 1.0 / (along + 2.0 * more * more)
+    odd, weight = fix.level_range - distance - more, 1.0 / (along + 2.0 * more * more)
     return Innovation(odd * n, odd * e, Block(weight * n * n, weight * n * e, weight * n * e, weight * e * e))
 
 

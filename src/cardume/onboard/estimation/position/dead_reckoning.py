@@ -23,7 +23,7 @@ def displacement(motion: Motion, dt: float) -> tuple[float, float]:
 
     Source: paper eq. (49), midpoint instead of Euler, hats restored.
     """
-    north, east = to_ned(motion.heading + 0.5 * dt * motion.yaw_rate, motion.surge, motion.sway)
+    north, east = _velocity_midway(motion, dt)
     return dt * (north + motion.current_north), dt * (east + motion.current_east)
 
 
@@ -58,5 +58,11 @@ def way_through_water(motion: Motion, dt: float) -> tuple[float, float]:
     Returns:
         North and east [m].
     """
-    north, east = to_ned(motion.heading + 0.5 * dt * motion.yaw_rate, motion.surge, motion.sway)
+    north, east = _velocity_midway(motion, dt)
     return dt * north, dt * east
+
+
+@compiled
+def _velocity_midway(motion: Motion, dt: float) -> tuple[float, float]:
+    """Velocity through the water [m/s], north and east, with the heading in the middle of the tick."""
+    return to_ned(motion.heading + 0.5 * dt * motion.yaw_rate, motion.surge, motion.sway)

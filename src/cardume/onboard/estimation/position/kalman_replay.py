@@ -6,6 +6,7 @@ import numpy as np
 
 from cardume.compiler import Rows, some, where
 from cardume.laws import (
+    Bounds,
     Length,
     Meters,
     MetersPerSecond,
@@ -26,6 +27,7 @@ from cardume.onboard.estimation.position.past_fixes import FIXES_WIDTH, begin, g
 from cardume.signals import Fix, Motion, NavigationEstimate
 
 REMEMBERED = 256  # ticks; an older fix is left out
+AtLeastOne = Annotated[float, Unit(""), Bounds(1.0)]
 
 
 class Replayed(NamedTuple):
@@ -57,21 +59,23 @@ def kalman_replay(
     sway_time: NotNegative[Seconds] = 0.0,
     fix_sigma: Positive[Meters] = 1.0,
     gate: Positive[Number] = 16.0,
-    patience: NotNegative[Number] = 5.0,
+    patience: AtLeastOne = 5.0,
 ) -> tuple[NavigationEstimate, Replayed]:
     """Kalman filter of position, current and calibration that works a late fix in at the time of its validity.
 
     p' = (1 + s) R(b) V_m + c + white(q_v),   c' = -f c + white(q_c),   z(t - age) = p(t - age) + noise(R)
 
-    V_m = R(psi) (u, v) is the velocity through the water as measured, s and b its scale and heading errors, which are
-    constant but for a slow drift.  What is believed after each of the last 8 fixes is kept; a new one is put among
-    them by its time of validity, and all later ones are worked in again, so that neither delay nor order changes the
-    result.  Between fixes the state, and its covariance, is a closed form of the time and of the way through the
-    water since the last one.  A fix whose squared innovation over its variance exceeds gate (1 + k)^2, after k that
-    were not believed either, is not believed; after `patience` of them in a row the filter starts again at the next.
+    V_m = R(psi) (u, v) is the velocity through the water as measured, s and b its scale and heading errors, which
+    are constant but for a drift by their first variance in an hour.  What is believed after each of the last 8
+    fixes is kept; a new one is put among them by its time of validity, and all later ones are worked in again, so
+    that neither delay nor order changes the result.  Between fixes the state, and its covariance, is a closed form
+    of the time and of the way through the water since the last one.  A fix whose squared innovation over its
+    variance exceeds gate (1 + k)^2, after k that were not believed either, is not believed; after `patience` of
+    them in a row the filter starts again at the next one that is a position.
 
     Args:
-        fix: position [m], age [s] and covariance [m^2]; NaN when there is none in this tick.
+        fix: position or level range [m], age [s] (a negative one, of a time that was rounded, is 0) and covariance
+            [m^2]; NaN when there is none in this tick.
         motion: measured velocity through the water, for the step to the next tick; its current is not used.
         memory: the way through the water, and the last fixes.
         dt: [s] tick.
@@ -86,7 +90,7 @@ def kalman_replay(
             and added mass in surge) over the linear drag in sway, 0.9 s for MEDUSA.
         fix_sigma: [m] of a fix that does not tell its own covariance, per axis.
         gate: [-] largest believable squared innovation over its variance; 16 is exceeded by 0.03 % of good fixes.
-        patience: [-] how many fixes in a row are not believed before the filter starts again.
+        patience: [-] how many fixes in a row are not believed before the filter starts again at a position; at least 1.
 
     Returns:
         The position [m] with its covariance [m^2], the current [m/s] that makes the measured velocity through the water
@@ -113,7 +117,8 @@ def kalman_replay(
         begin(memory.fixes, memory.north, memory.east, is_first, doubts)
     has_fix = (fix.north == fix.north) & (fix.east == fix.east)
     if some(has_fix):
-        old = where(has_fix, fix.age, 0.0) / dt
+        age = where(fix.age < 0.0, 0.0, fix.age)
+        old = where(has_fix, age, 0.0) / dt
         is_known = has_fix & (old <= memory.tick) & (old <= REMEMBERED - 1.0)
         then = memory.tick - where(is_known, old, 0.0)
         north, east = recall(memory.norths, REMEMBERED, then), recall(memory.easts, REMEMBERED, then)
