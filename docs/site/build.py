@@ -11,7 +11,7 @@ SITE = ROOT / ".cache" / "site"
 TOPS = ("README.md", "ARCHITECTURE.md", "NOTATION.md", "CONTRIBUTING.md", "CHANGELOG.md")
 BESIDE = ("LICENSE", "CITATION.cff", "Makefile", "pyproject.toml")  # that pages link to
 SECTIONS = {
-    "Begin": ["README", "docs/tutorials/index", "docs/missions", "docs/formats", "docs/report", "docs/lab"],
+    "Begin": ["README", "docs/tutorials/index", "docs/missions", "docs/formats", "docs/report", "docs/lab", "docs/replay"],
     "Laws": ["docs/laws/index"],
     "Extend": ["docs/extending/index"],
     "Theory": ["docs/theory/errata", "docs/theory/claims"],

@@ -24,6 +24,7 @@ from cardume.cli.convert import convert
 from cardume.cli.lab import lab
 from cardume.cli.list import list_
 from cardume.cli.new import new
+from cardume.cli.replay import replay
 from cardume.cli.report import report
 from cardume.cli.run import run
 from cardume.cli.stopping import Stopped
@@ -74,7 +75,7 @@ def cli() -> None:
     """Fly fleets of marine robots along coordinated paths."""
 
 
-for _command in (run, check, compare, study, tune, report, lab, calibrate, list_, new, convert):
+for _command in (run, check, compare, study, tune, report, lab, calibrate, replay, list_, new, convert):
     cli.add_command(_command)
 
 

@@ -84,6 +84,12 @@ def believed_motion(mind: Mind, measured: Measured, speed: DvlReading) -> Motion
 @compiled
 def navigate(mind: Mind, measured: Measured, heard: Rows, motion: Motion, time: float) -> NavigationEstimate:
     """The believed position: GNSS where there is a reading, else the newest fix that was heard, else reckoning."""
+    return work_in(mind, choose_fix(mind, measured, heard, time), motion, time)
+
+
+@compiled
+def choose_fix(mind: Mind, measured: Measured, heard: Rows, time: float) -> Fix:
+    """The fix of this tick: by GNSS where there is a reading, else one that was heard, else none."""
     by_gnss = measured.gnss_north == measured.gnss_north
     if some(get_setup(mind.own, 0).takes_old_fixes > 0.5):
         fix = unused_fix(mind, heard, by_gnss, measured.depth, time)
@@ -93,14 +99,26 @@ def navigate(mind: Mind, measured: Measured, heard: Rows, motion: Motion, time: 
     by_satellite = Fix(
         measured.gnss_north, measured.gnss_east, measured.gnss_age, variance, 0.0 * variance, variance, NOTHING
     )
-    chosen = where(by_gnss, by_satellite, fix)
-    position = estimate_position(mind.book, 0, chosen, motion)
+    return where(by_gnss, by_satellite, fix)
+
+
+@compiled
+def work_in(mind: Mind, fix: Fix, motion: Motion, time: float) -> NavigationEstimate:
+    """What the position law makes of this tick's fix and of the way made; it is remembered.
+
+    Args:
+        mind: of the vehicle.
+        fix: of this tick; NaN: none.
+        motion: how the vehicle believes it moves.
+        time: [s]
+    """
+    position = estimate_position(mind.book, 0, fix, motion)
     before = get_whereabouts(mind.own, 0).time_of_fix
-    valid = time - chosen.age
+    valid = time - fix.age
     after = Whereabouts(
         position.north,
         position.east,
-        where((chosen.north == chosen.north) & ((valid > before) | (before > time + SAME)), valid, before),
+        where((fix.north == fix.north) & ((valid > before) | (before > time + SAME)), valid, before),
         position.north_variance,
         position.covariance,
         position.east_variance,
