@@ -12,10 +12,24 @@ from cardume.missions.recordings.playing import play
 from cardume.missions.recordings.replaying import Request, replay
 from recordings.flown import OVERRIDES, fly_to
 
+FAULTS = """faults=[
+  {kind: sensor_frozen, vehicle: port, sensor: ahrs, from: 5 s, lasts: 20 s},
+  {kind: sensor_nan, vehicle: port, sensor: thruster_speed, from: 30 s, lasts: 5 s},
+  {kind: sensor_frozen, vehicle: surface, sensor: gnss, from: 10 s, lasts: 8 s},
+  {kind: gnss_lost, vehicle: surface, from: 30 s, lasts: 5 s},
+  {kind: usbl_outlier, vehicle: surface, from: 0 s, probability: 0.1, size: 20 m},
+  {kind: clock_drift, vehicle: starboard, drift: 0.01, from: 5 s},
+  {kind: clock_offset, vehicle: port, offset: -3 s, from: 20 s, to: 40 s},
+  {kind: current_step, speed: 0.1 m/s, towards: 90 deg, from: 25 s},
+]"""
+
 
 @pytest.mark.parametrize(
     ("mission", "overrides"),
     [
+        ("paper/figure-5", (*OVERRIDES, FAULTS)),
+        ("paper/figure-5", ("duration=60 s", FAULTS)),
+        ("acoustics/figure-5-s2c", ("duration=60 s",)),
         ("paper/figure-5", OVERRIDES),
         ("paper/figure-5", ("duration=60 s",)),
         ("paper/figure-5", ("duration=40 s", "position={law: reset_compensated}")),

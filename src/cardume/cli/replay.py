@@ -11,7 +11,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from cardume.cli.drawing import Drawing, own_up
-from cardume.cli.options import allow_code_option, json_option, quiet_option, set_option
+from cardume.cli.options import (
+    Asked,
+    allow_code_option,
+    json_option,
+    no_figures_option,
+    output_option,
+    quiet_option,
+    set_option,
+    take_asked,
+)
 from cardume.cli.progress import Progress
 from cardume.cli.stopping import stoppable
 from cardume.cli.text import filled
@@ -88,11 +97,9 @@ COLUMNS = (
     type=click.FloatRange(1e-3, 1e4),
     help="Of fixes that do not tell theirs.",
 )
-@click.option(
-    "-o", "output", type=click.Path(path_type=Path), metavar="DIR", help="Where to; else runs/replay-NAME/001, ..."
-)
+@output_option("runs/replay-NAME")
 @set_option
-@click.option("--no-figures", is_flag=True, help="Draw nothing.")
+@no_figures_option
 @allow_code_option
 @quiet_option
 @json_option
@@ -113,21 +120,21 @@ def replay(**given: Any) -> int:
     from cardume.missions.results import choose_destination
     from cardume.report.replay_figure import save_replay
 
-    request = _request(given)
-    is_talkative = not (given["quiet"] or given["as_json"])
-    destination = choose_destination(name_of(request.path), given["output"])
-    with Progress(is_talkative) as progress:
+    asked = take_asked(given)
+    request = _request(asked, given)
+    destination = choose_destination(name_of(request.path), asked.output)
+    with Progress(asked.is_talkative) as progress:
         found = play(request, progress)
-    drawing = Drawing(lambda folder: save_replay(found, folder / "figures"), not given["no_figures"])
+    drawing = Drawing(lambda folder: save_replay(found, folder / "figures"), not asked.no_figures)
     directory, summary = keep(destination, found, version=version(), draw=drawing)
-    if given["as_json"]:
+    if asked.as_json:
         click.echo(json.dumps(summary, indent=2))
-    elif not given["quiet"]:
+    elif not asked.quiet:
         _say(found, directory, summary, request)
     return own_up(drawing.problem, "the figure") if drawing.problem is not None else DONE
 
 
-def _request(given: dict[str, Any]) -> "Request":
+def _request(asked: Asked, given: dict[str, Any]) -> "Request":
     from cardume.missions.recordings.base import Options
     from cardume.missions.recordings.replaying import Request, read_position, read_start
 
@@ -155,12 +162,12 @@ def _request(given: dict[str, Any]) -> "Request":
         current_observer=read_position(given["current_observer"], "--current-observer")
         if given["current_observer"]
         else None,
-        overrides=given["overrides"],
+        overrides=asked.overrides,
         start=read_start(given["start"]) if given["start"] else None,
         tick=given["tick"],
         options=options,
         looks_back=given["looks_back"],
-        allow_code=given["allow_code"],
+        allow_code=asked.allow_code,
     )
 
 

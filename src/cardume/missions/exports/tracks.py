@@ -20,7 +20,7 @@ class Track(NamedTuple):
     times: np.ndarray  # (n,) [s]
     latitude_deg: np.ndarray  # (n,)
     longitude_deg: np.ndarray  # (n,)
-    depth: np.ndarray  # (n,) [m] true, also of a believed track
+    depth: np.ndarray  # (n,) [m] true, also of a believed track; 0 where it is not known
 
 
 def tracks_of(flight: Flight, origin: GeoPoint) -> list[Track]:
@@ -35,10 +35,10 @@ def tracks_of(flight: Flight, origin: GeoPoint) -> list[Track]:
         for kind, ending in KINDS.items():
             north, east = (flight.channels[f"{axis}{ending}"][:, k] for axis in ("north", "east"))
             depth = flight.channels["depth"][:, k]
-            known = np.isfinite(north) & np.isfinite(east) & np.isfinite(depth)
+            known = np.isfinite(north) & np.isfinite(east)
             if known.any():
                 latitude, longitude = degrees_of(north[known], east[known], origin)
-                tracks.append(Track(name, kind, flight.times[known], latitude, longitude, depth[known]))
+                tracks.append(Track(name, kind, flight.times[known], latitude, longitude, np.nan_to_num(depth[known])))
     return tracks
 
 

@@ -122,6 +122,7 @@ def play_ranges(
         given,
         truth,
         np.full((len(table), 2), math.nan),
+        recorded.depth.held(table[:, 0])[:, 0] if recorded.depth.is_there else np.full(len(table), math.nan),
     )
     mean = bank.mean if bank is not None else np.full(8, math.nan)
     return believed, innovations, {"range_scale": float(mean[RANGE_SCALE]), "range_bias": float(mean[RANGE_BIAS])}

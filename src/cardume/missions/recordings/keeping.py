@@ -133,6 +133,7 @@ def _columns(part: Part, times: np.ndarray) -> dict[str, np.ndarray]:
     is_there = (rows >= 0) & (times <= b.times[-1] + 1e-6)
     tables = {
         ("north", "east"): b.truth,
+        ("depth",): b.depth[:, None],
         ("current_north", "current_east"): b.true_current,
         ("north_estimate", "east_estimate"): b.position,
         ("current_north_estimate", "current_east_estimate"): b.current,

@@ -9,7 +9,8 @@ import numpy as np
 from cardume.laws import COLUMNS, FAMILIES, WIDTH
 from cardume.missions.recordings.meeting import Met
 from cardume.signals import Fix, Motion, NavigationEstimate, Water
-from cardume.simulation.replaying import PLAYED, Before, navigate_through
+from cardume.simulation.fleet import Held
+from cardume.simulation.replaying import PLAYED, READINGS, Before, navigate_through
 from cardume.simulation.tables import make_tables
 
 PART = 10_000  # ticks played at once
@@ -30,6 +31,7 @@ class Believed(NamedTuple):
     fixes: np.ndarray  # (tick, len(Fix)) what it was given; NaN: nothing
     truth: np.ndarray  # (tick, 2) [m]; NaN: not known
     true_current: np.ndarray  # (tick, 2) [m/s]; NaN: not known
+    depth: np.ndarray  # (tick,) [m] as measured; NaN: not measured
 
 
 class Score(NamedTuple):
@@ -84,6 +86,7 @@ def play(met: Met) -> Believed:
         of(Fix),
         met.truth,
         met.true_current,
+        met.readings[:, READINGS.column(Held, "depth")],
     )
 
 
