@@ -82,3 +82,12 @@ def test_no_package_index_is_named(file: str) -> None:
 
 def normal(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def test_what_a_study_imports_when_it_is_needed_is_declared() -> None:
+    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "src/cardume/studies").rglob("*.py")]
+    modules = {name.partition(".")[0] for text in sources for name in re.findall(r'needed\(\s*"([\w.]+)"', text)}
+    assert modules >= {"zarr", "numcodecs"}
+    for extra in ("study", "dev"):
+        declared = {re.split("[>=<]", line)[0] for line in PROJECT["project"]["optional-dependencies"][extra]}
+        assert {name.replace("_", "-") for name in modules} <= declared

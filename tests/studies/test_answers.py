@@ -7,6 +7,7 @@ import pytest
 from scipy import stats
 
 from cardume.errors import DataError
+from cardume.report.study.words import study_words
 from cardume.studies.answers.differences import differences, swept_laws
 from cardume.studies.answers.distributions import MOST_RESAMPLED, distribution, mean_of, means_of, quantile
 from cardume.studies.answers.regions import (
@@ -242,6 +243,16 @@ def test_worst_runs_in_order() -> None:
     assert both.excess == pytest.approx(1.0)
     assert nothing.excess == math.inf
     assert found[3].label == "acoustics.delay 0 s"
+
+
+def test_by_how_much_a_limit_of_its_own_was_missed_is_not_told() -> None:
+    """A least altitude that is drawn: more of it is no worse, and 12 m are not 1200 % too much."""
+    dataset = make_dataset({"altitude_min": np.array([12.0, 3.0, 8.0])}, required=["altitude_min >= its limit"])
+    dataset["met"].values[:] = [[True], [False], [True]]
+    worst, *others = worst_runs(Results(dataset))
+    assert (worst.seed, worst.missed, worst.excess) == (2, ("altitude_min >= its limit",), -math.inf)
+    assert not any(one.missed for one in others)
+    assert study_words(dataset)[-1] == "The worst run is seed 2: it missed altitude_min >= its limit."
 
 
 def test_without_requirements_the_first_metric_decides() -> None:

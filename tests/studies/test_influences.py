@@ -1,6 +1,8 @@
 """Sensitivity: functions whose indices are known in closed form, and intervals that cover as often as they say."""
 
+import gc
 import math
+import weakref
 
 import numpy as np
 import pytest
@@ -127,3 +129,12 @@ def test_nothing_to_say_of_what_does_not_vary() -> None:
     assert influences(Results(make_dataset({"energy": np.arange(50.0)})), "energy") is None
     few = make_dataset({"energy": np.arange(5.0)}, drawn={"current.speed": (np.arange(5.0), "m/s")})
     assert influences(Results(few), "energy") is None
+
+
+def test_a_study_is_not_kept_for_what_was_asked_of_it() -> None:
+    results = study()
+    assert influences(results, "cross_track_rms") is influences(results, "cross_track_rms")
+    gone = weakref.ref(results)
+    del results
+    gc.collect()
+    assert gone() is None

@@ -307,3 +307,12 @@ def test_a_file_size_limit_is_told_and_leaves_whole_portions(whole: Path, tmp_pa
     assert not np.any(cardume.open_study(directory)["status"].values)
     killing.fly(directory, resume=True)
     assert_same(whole, directory)
+
+
+def test_whatever_stands_beside_a_study_does_not_stop_it(copy: Path) -> None:
+    """Folders that look half-written: of no number, of one that no process has, and of this process."""
+    places = [copy.parent / f".{copy.name}.{number}.partial" for number in ("\u00b2", "9" * 30, str(os.getpid()))]
+    for place in places:
+        place.mkdir()
+    assert resumed(copy) == (0, ())
+    assert [place.exists() for place in places] == [True, False, True]

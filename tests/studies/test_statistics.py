@@ -28,6 +28,24 @@ def test_students_quantile_is_that_of_scipy(freedom: int, probability: float) ->
     assert student_within(expected, freedom) == pytest.approx(2.0 * probability - 1.0, rel=1e-10)
 
 
+@pytest.mark.timeout(20)
+@pytest.mark.parametrize("freedom", [1001, 5000, 10**8])
+@pytest.mark.parametrize("probability", [0.5, 0.6, 0.975, 0.9995, 1.0 - 1e-7])
+def test_students_quantile_of_many_takes_no_time(freedom: int, probability: float) -> None:
+    """By the series of as many terms it would take hours."""
+    assert student_quantile(probability, freedom) == pytest.approx(
+        stats.t.ppf(probability, freedom), rel=1e-8, abs=1e-12
+    )
+
+
+def test_what_is_remembered_of_resampling_is_small() -> None:
+    kept = statistics.resampled_counts(400).nbytes + statistics._places(400).nbytes
+    assert 2 * kept <= 50e6  # both caches hold two
+    sample = np.random.default_rng(4).normal(size=150)
+    counted = statistics.resampled_counts(150) @ sample / 150
+    np.testing.assert_allclose(counted, resampled_means(sample), rtol=0.0, atol=1e-14)
+
+
 @pytest.mark.parametrize(("successes", "count"), [(0, 20), (1, 3), (19, 20), (20, 20), (50, 100)])
 def test_wilsons_interval_is_that_of_scipy(successes: int, count: int) -> None:
     expected = stats.binomtest(successes, count).proportion_ci(0.95, method="wilson")

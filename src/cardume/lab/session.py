@@ -17,10 +17,10 @@ from cardume.lab.study import Study, Tell, metrics_for_page
 from cardume.missions import library
 from cardume.missions.runs import Run, run_of
 from cardume.report.page.layout import base_layout
+from cardume.studies.constants import LARGEST_SEED
 
 PATIENCE = 0.5  # [s] after which a flight makes room for a newer one
 REPLACEABLE = ("fly",)
-LARGEST_SEED = 2**63 - 1
 MOST_CHANGES, LONGEST_TEXT = 3000, 200_000
 
 

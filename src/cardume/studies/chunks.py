@@ -36,11 +36,11 @@ def encoded(block: np.ndarray, shape: tuple[int, ...], fill: Any) -> bytes:
         whole = np.full(shape, fill, block.dtype)
         whole[tuple(map(slice, block.shape))] = block
     if whole.dtype == object:
-        raw = needed("numcodecs", "zarr").VLenUTF8().encode(whole.ravel())
+        raw = needed("numcodecs", "numcodecs").VLenUTF8().encode(whole.ravel())
     else:
         raw = np.ascontiguousarray(whole if sys.byteorder == "little" else whole.byteswap())
-    packed: bytes = needed("numcodecs", "zarr").Zstd(level=LEVEL).encode(raw)
-    return packed + int(needed("google_crc32c", "zarr").value(packed)).to_bytes(4, "little")
+    packed: bytes = needed("numcodecs", "numcodecs").Zstd(level=LEVEL).encode(raw)
+    return packed + int(needed("google_crc32c", "google-crc32c").value(packed)).to_bytes(4, "little")
 
 
 def write_chunk(file: Path, content: bytes) -> None:

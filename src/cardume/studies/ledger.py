@@ -55,7 +55,9 @@ class Ledger:
         self._file = self._held = -1
 
     def note(self, number: int, digest: str) -> None:
-        """Write that a portion is complete; after this it is, whatever happens to the machine.
+        """Write that a portion is complete, and force the line to the disk.
+
+        The portion's own files are not forced there: after a power cut the digest tells whether they arrived.
 
         Args:
             number: of the portion.

@@ -271,7 +271,7 @@ def remove_partial_files(directory: Path) -> None:
         file.unlink(missing_ok=True)
     for folder in directory.absolute().parent.glob(f".{glob.escape(directory.name)}.*.partial"):
         number = folder.name.split(".")[-2]
-        if number.isdigit() and not _is_alive(int(number)):
+        if number.isascii() and number.isdigit() and not _is_alive(int(number)):
             shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -316,6 +316,8 @@ def _is_alive(process: int) -> bool:
         os.kill(process, 0)
     except ProcessLookupError:
         return False
+    except OverflowError:
+        return False  # no process ever had such a number
     except OSError:
         pass  # somebody else's
     return True

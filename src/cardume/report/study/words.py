@@ -209,5 +209,5 @@ def _worst(results: Results) -> str:
     where = f" with {one.label}" if one.label else ""
     if one.failure:
         return f"The worst run is seed {one.seed}{where}: it failed in flight."
-    by = f", by {100.0 * one.excess:.0f} %" if math.isfinite(one.excess) else ", without a value"
+    by = f", by {100.0 * one.excess:.0f} %" if math.isfinite(one.excess) else ", without a value" * (one.excess > 0.0)
     return f"The worst run is seed {one.seed}{where}: it missed {one.missed[0]}{by}."

@@ -135,7 +135,7 @@ def quantile(ordered: np.ndarray, share: float, confidence: float = CONFIDENCE) 
 
     P(x_(l) <= q_p <= x_(u)) = P(l <= B <= u - 1),  B the number of values below q_p, binomial (n, p)
 
-    l and u are the outermost for which each end misses with (1 - confidence) / 2 at most.
+    l and u are the innermost for which each end misses with (1 - confidence) / 2 at most.
 
     Args:
         ordered: (n,) [any] in ascending order, without NaN.

@@ -12,7 +12,6 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -90,7 +89,6 @@ class Influences:
     num_missions: int
 
 
-@lru_cache(maxsize=16)
 def influences(results: Results, metric: str) -> Influences | None:
     """What each input does to a metric.
 
@@ -101,6 +99,10 @@ def influences(results: Results, metric: str) -> Influences | None:
     Returns:
         None where nothing varies, the metric does not, or there are fewer than 20 runs.
     """
+    return results.once(("influences", metric), lambda: _influences(results, metric))
+
+
+def _influences(results: Results, metric: str) -> Influences | None:
     values = results.values(metric)
     runs = _chosen_runs(values)
     if len(runs) < FEWEST_RUNS:

@@ -1,9 +1,9 @@
 """The dataset of a study as arrays with the cases first and the runs last."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from cardume.studies.constants import (
 )
 from cardume.units import SHOWN_IN, printable, show_quantity
 
+Answer = TypeVar("Answer")
 FIXED = (RUN, VEHICLE, REQUIREMENT)
 MOST_SHOWN = 8  # metrics
 
@@ -65,6 +66,19 @@ class Results:
         self.dataset = dataset
         self.swept: tuple[str, ...] = tuple(str(name) for name in dataset["status"].dims if name not in FIXED)
         self.shape: tuple[int, ...] = tuple(int(dataset.sizes[key]) for key in self.swept)
+        self._answers: dict[Hashable, Any] = {}
+
+    def once(self, question: Hashable, answer: Callable[[], Answer]) -> Answer:
+        """An answer that takes long, made once and remembered as long as the study is.
+
+        Args:
+            question: that it answers.
+            answer: makes it.
+        """
+        if question not in self._answers:
+            self._answers[question] = answer()
+        found: Answer = self._answers[question]
+        return found
 
     def array(self, name: str, *last: str) -> np.ndarray:
         """A variable (swept ..., run, last ...), its dimensions in that order.

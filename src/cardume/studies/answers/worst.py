@@ -21,7 +21,8 @@ class WorstRun:
         seed: that it flew with.
         label: of the case, in words.
         missed: what it missed, readable, the worst first.
-        excess: [-] by which share of the limit it missed at most; of one that met everything how near it came, < 0.
+        excess: [-] by which share of the limit it missed at most; of one that met everything how near it came, < 0;
+            infinite where it has no value, and minus that where only limits were missed that each run has of its own.
         failure: why it failed in flight, or "".
     """
 
@@ -80,7 +81,7 @@ def _excess(results: Results) -> np.ndarray:
     got = results.array("got", "requirement").astype(float)
     bounds, signs = (np.array([getattr(limit, name) for limit in results.limits]) for name in ("bound", "sign"))
     scale = np.where(np.abs(bounds) > 0.0, np.abs(bounds), 1.0)
-    over = np.where(np.isfinite(bounds), signs * (got - bounds) / scale, got)
+    over = np.where(np.isfinite(bounds), signs * (got - bounds) / scale, -math.inf)
     return np.where(np.isfinite(got), over, math.inf)
 
 
