@@ -1,7 +1,7 @@
 """The only place that knows Numba: what the rest of the package needs to write compiled code."""
 
 from cardume.compiler.bits import scale2, split2, to_bits, to_float
-from cardume.compiler.compiled import compiled, entry, source_stamp
+from cardume.compiler.compiled import compiled, entry, inlined, source_stamp
 from cardume.compiler.lanes import (
     WIDTH,
     floor,
@@ -11,7 +11,7 @@ from cardume.compiler.lanes import (
     where,
 )
 from cardume.compiler.records import Layout
-from cardume.compiler.reference import fixed, passing
+from cardume.compiler.reference import passing
 from cardume.compiler.rows import (
     Rows,
     SharedRows,
@@ -36,9 +36,9 @@ __all__ = [
     "by_width",
     "compiled",
     "entry",
-    "fixed",
     "floor",
     "gather",
+    "inlined",
     "load",
     "load_fixed",
     "negate",

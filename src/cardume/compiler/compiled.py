@@ -57,8 +57,22 @@ def compiled(function: F) -> F:
     """
 
     passed = sum(_numbers_in(p.annotation) for p in inspect.signature(function).parameters.values())
-    options = OPTIONS | (INLINED if passed > MOST_PASSED else {})
+    return _specialized(function, OPTIONS | (INLINED if passed > MOST_PASSED else {}))
 
+
+def inlined(function: F) -> F:
+    """The same as `compiled`, in the code of every caller: for what hands back a large record or is short.
+
+    Args:
+        function: plain scalar Python, positional arguments only.
+
+    Returns:
+        The same function.
+    """
+    return _specialized(function, OPTIONS | INLINED)
+
+
+def _specialized(function: F, options: dict[str, Any]) -> F:
     # Numba compiles `function` itself, once for each number type that it meets.
     @overload(function, strict=False, jit_options=options)
     def specialized(*arguments: Any) -> Callable[..., Any]:

@@ -20,9 +20,9 @@ from cardume.compiler.primitive import primitive
 class ReferenceType(types.Type):
     """Numba type of the address of a record; its fields are read as the record's own."""
 
-    def __init__(self, record: Any, is_fixed: bool) -> None:
-        self.record, self.is_fixed = record, is_fixed
-        super().__init__(name=f"Reference({record}, {is_fixed})")
+    def __init__(self, record: Any) -> None:
+        self.record = record
+        super().__init__(name=f"Reference({record})")
 
 
 @register_model(ReferenceType)
@@ -43,22 +43,7 @@ class _ReferenceFields(AttributeTemplate):
 @lower_getattr_generic(ReferenceType)
 def _read_field(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:
     place = kind.record.instance_class._fields.index(name)
-    field = builder.load(builder.gep(value, [ir.Constant(INT32, 0), ir.Constant(INT32, place)], inbounds=True))
-    if kind.is_fixed:
-        field.set_metadata("invariant.load", builder.module.add_metadata([]))
-    return field
-
-
-def fixed(record: Any) -> Any:
-    """The same record, by reference, for as long as the calling function runs; it is made once in it.
-
-    Args:
-        record: a `NamedTuple`.
-
-    Returns:
-        In compiled code its address; in plain Python the record itself.
-    """
-    return record
+    return builder.load(builder.gep(value, [ir.Constant(INT32, 0), ir.Constant(INT32, place)], inbounds=True))
 
 
 def passing(record: Any) -> Any:
@@ -73,14 +58,6 @@ def passing(record: Any) -> Any:
     return record
 
 
-def _take_the_address(function: Any, is_fixed: bool) -> None:
-    @primitive(
-        function,
-        lambda record: ReferenceType(record, is_fixed)(record) if isinstance(record, types.BaseNamedTuple) else None,
-    )
-    def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-        return cgutils.alloca_once_value(b, arguments[0])
-
-
-_take_the_address(fixed, is_fixed=True)
-_take_the_address(passing, is_fixed=False)
+@primitive(passing, lambda record: ReferenceType(record)(record) if isinstance(record, types.BaseNamedTuple) else None)
+def _take_the_address(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    return cgutils.alloca_once_value(b, arguments[0])

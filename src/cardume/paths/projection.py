@@ -14,7 +14,7 @@ where the vehicle was (`on_curve.py`).
 
 from typing import NamedTuple
 
-from cardume.compiler import Rows, compiled, load, some, where
+from cardume.compiler import Rows, compiled, inlined, load, some, where
 from cardume.maths import atan2, clip, hypot, sincos, unwrap_near, wrap_angle
 from cardume.paths.base import reference_point_law
 from cardume.paths.on_curve import curve_point, foot_on_curve, gained_speed, is_curve, reference_along
@@ -227,7 +227,7 @@ def point_at(path: Rows, arc_length: float) -> PointAhead:
     return point_on(path, segment_at(path, arc_length, ARC_START), arc_length)
 
 
-@compiled
+@inlined
 def point_of_formation(path: Rows, path_parameter: float, guess: float) -> PointAhead:
     """Where a vehicle belongs when the formation has this coordination state.
 
@@ -268,7 +268,7 @@ def point_on(path: Rows, segment: float, arc_length: float) -> PointAhead:
     return point
 
 
-@compiled
+@inlined
 def _point_along(path: Rows, segment: float, s: float) -> PointAhead:
     """The point s [m] from the start of a line or an arc."""
     c = segment_value(path, segment, CURVATURE)

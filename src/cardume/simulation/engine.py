@@ -1,6 +1,6 @@
 """What Python calls: fly some ticks of one mission, or of eight."""
 
-from cardume.compiler import entry, fixed, passing
+from cardume.compiler import entry, passing
 from cardume.onboard.agent import decide
 from cardume.signals import Reference, Report
 from cardume.simulation.air import inbox_of
@@ -20,7 +20,7 @@ def advance(tables: Tables, start: int, stop: int) -> int:
     Returns:
         The first tick that was not flown.
     """
-    fleet = fixed(fleet_of(tables))
+    fleet = passing(fleet_of(tables))
     for now in range(start, stop):
         if tick(fleet, now):
             return now + 1
@@ -39,7 +39,7 @@ def think(tables: Tables, vehicle: int, time: float) -> tuple[Reference, Report]
     Returns:
         What it asks of its autopilot, and the head of what it tells the others.
     """
-    fleet = fixed(fleet_of(tables))
+    fleet = passing(fleet_of(tables))
     mind, measured = passing(mind_of(fleet, vehicle)), measured_of(fleet, vehicle)
     reference, said = decide(mind, measured, inbox_of(fleet, vehicle), time)
     return reference, said.report

@@ -1,6 +1,6 @@
 """Sensors: each reads the truth of its latency ago at its own period, and holds or forgets the reading."""
 
-from cardume.compiler import at, compiled, floor, load, negate, some, store, where
+from cardume.compiler import at, compiled, floor, inlined, load, negate, some, store, where
 from cardume.maths import to_body
 from cardume.maths.random import Key, normals
 from cardume.onboard.mind import get_setup, head_of, is_fresh
@@ -88,11 +88,16 @@ put_past_water, pick_past_water = SEEN.writer(Water), SEEN.picker(Water)
 def sense(fleet: Fleet, vehicle: int, now: int) -> Measured:
     """Let every sensor of a vehicle that is due read, and return what all of them say now."""
     remember(fleet, vehicle, now)
-    sense_attitude(fleet, vehicle, now)
-    sense_depth(fleet, vehicle, now)
-    sense_shaft(fleet, vehicle, now)
-    sense_altitude(fleet, vehicle, now)
-    sense_velocity(fleet, vehicle, now)
+    if reads(fleet, vehicle, AHRS, now):
+        sense_attitude(fleet, vehicle, now)
+    if reads(fleet, vehicle, DEPTH, now):
+        sense_depth(fleet, vehicle, now)
+    if reads(fleet, vehicle, THRUSTER_SPEED, now):
+        sense_shaft(fleet, vehicle, now)
+    if reads(fleet, vehicle, ALTIMETER, now):
+        sense_altitude(fleet, vehicle, now)
+    if reads(fleet, vehicle, DVL, now):
+        sense_velocity(fleet, vehicle, now)
     sense_position(fleet, vehicle, now)
     sense_others(fleet, vehicle, now)
     return measured_of(fleet, vehicle)
@@ -111,6 +116,12 @@ def remember(fleet: Fleet, vehicle: int, now: int) -> None:
 def timing_of(fleet: Fleet, vehicle: int, sensor: int) -> Timing:
     """When a sensor of a vehicle reads."""
     return get_timing(fleet.timings, vehicle * NUM_SENSORS + sensor)
+
+
+@inlined
+def reads(fleet: Fleet, vehicle: int, sensor: int, now: int) -> bool:
+    """Whether a sensor of a vehicle reads in this tick, in any lane."""
+    return some(timing_of(fleet, vehicle, sensor).next_sample <= now)
 
 
 @compiled
@@ -144,7 +155,7 @@ def past_row(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> float:
     return vehicle * fleet.past_size + then - fleet.past_size * floor(then / fleet.past_size)
 
 
-@compiled
+@inlined
 def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselState:
     """The state of a vehicle when the reading of this tick was valid."""
     vessel = get_vessel(fleet.vehicles, vehicle)
@@ -153,7 +164,7 @@ def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselS
     return vessel
 
 
-@compiled
+@inlined
 def water_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> Water:
     """The water around a vehicle when the reading of this tick was valid."""
     water = get_water(fleet.vehicles, vehicle)
@@ -173,19 +184,18 @@ def sense_attitude(fleet: Fleet, vehicle: int, now: int) -> None:
     """Heading, yaw rate, roll and pitch by AHRS."""
     timing = timing_of(fleet, vehicle, AHRS)
     due = timing.next_sample <= now
-    if some(due):
-        reading = read_ahrs(
-            book_of(fleet, vehicle, fleet.tick),
-            0,
-            vessel_then(fleet, vehicle, timing, now),
-            water_then(fleet, vehicle, timing, now),
-            noise_of(fleet, vehicle, AHRS, timing, now),
-            sampling_of(fleet, timing, now),
-        )
-        if fleet.faults.num > 0:
-            reading = attitude_in_fault(fleet, vehicle, reading, now * fleet.tick)
-        put_attitude(fleet.vehicles, vehicle, where(due, reading, get_attitude(fleet.vehicles, vehicle)))
-        schedule_next(fleet, vehicle, AHRS, timing, due)
+    reading = read_ahrs(
+        book_of(fleet, vehicle, fleet.tick),
+        0,
+        vessel_then(fleet, vehicle, timing, now),
+        water_then(fleet, vehicle, timing, now),
+        noise_of(fleet, vehicle, AHRS, timing, now),
+        sampling_of(fleet, timing, now),
+    )
+    if fleet.faults.num > 0:
+        reading = attitude_in_fault(fleet, vehicle, reading, now * fleet.tick)
+    put_attitude(fleet.vehicles, vehicle, where(due, reading, get_attitude(fleet.vehicles, vehicle)))
+    schedule_next(fleet, vehicle, AHRS, timing, due)
 
 
 @compiled
@@ -193,20 +203,19 @@ def sense_depth(fleet: Fleet, vehicle: int, now: int) -> None:
     """Depth by pressure."""
     timing = timing_of(fleet, vehicle, DEPTH)
     due = timing.next_sample <= now
-    if some(due):
-        depth = read_depth(
-            book_of(fleet, vehicle, fleet.tick),
-            0,
-            vessel_then(fleet, vehicle, timing, now),
-            water_then(fleet, vehicle, timing, now),
-            noise_of(fleet, vehicle, DEPTH, timing, now),
-            sampling_of(fleet, timing, now),
-        )
-        if fleet.faults.num > 0:
-            before = get_depth(fleet.vehicles, vehicle).depth
-            depth = number_in_fault(fleet, vehicle, DEPTH, depth, before, now * fleet.tick)
-        put_depth(fleet.vehicles, vehicle, where(due, DepthReading(depth), get_depth(fleet.vehicles, vehicle)))
-        schedule_next(fleet, vehicle, DEPTH, timing, due)
+    depth = read_depth(
+        book_of(fleet, vehicle, fleet.tick),
+        0,
+        vessel_then(fleet, vehicle, timing, now),
+        water_then(fleet, vehicle, timing, now),
+        noise_of(fleet, vehicle, DEPTH, timing, now),
+        sampling_of(fleet, timing, now),
+    )
+    if fleet.faults.num > 0:
+        before = get_depth(fleet.vehicles, vehicle).depth
+        depth = number_in_fault(fleet, vehicle, DEPTH, depth, before, now * fleet.tick)
+    put_depth(fleet.vehicles, vehicle, where(due, DepthReading(depth), get_depth(fleet.vehicles, vehicle)))
+    schedule_next(fleet, vehicle, DEPTH, timing, due)
 
 
 @compiled
@@ -214,20 +223,19 @@ def sense_shaft(fleet: Fleet, vehicle: int, now: int) -> None:
     """Speed of the thrusters' shafts."""
     timing = timing_of(fleet, vehicle, THRUSTER_SPEED)
     due = timing.next_sample <= now
-    if some(due):
-        shaft_speed = read_thruster_speed(
-            book_of(fleet, vehicle, fleet.tick),
-            0,
-            vessel_then(fleet, vehicle, timing, now),
-            water_then(fleet, vehicle, timing, now),
-            noise_of(fleet, vehicle, THRUSTER_SPEED, timing, now),
-            sampling_of(fleet, timing, now),
-        )
-        if fleet.faults.num > 0:
-            before = get_shaft(fleet.vehicles, vehicle).shaft_speed
-            shaft_speed = number_in_fault(fleet, vehicle, THRUSTER_SPEED, shaft_speed, before, now * fleet.tick)
-        put_shaft(fleet.vehicles, vehicle, where(due, ShaftReading(shaft_speed), get_shaft(fleet.vehicles, vehicle)))
-        schedule_next(fleet, vehicle, THRUSTER_SPEED, timing, due)
+    shaft_speed = read_thruster_speed(
+        book_of(fleet, vehicle, fleet.tick),
+        0,
+        vessel_then(fleet, vehicle, timing, now),
+        water_then(fleet, vehicle, timing, now),
+        noise_of(fleet, vehicle, THRUSTER_SPEED, timing, now),
+        sampling_of(fleet, timing, now),
+    )
+    if fleet.faults.num > 0:
+        before = get_shaft(fleet.vehicles, vehicle).shaft_speed
+        shaft_speed = number_in_fault(fleet, vehicle, THRUSTER_SPEED, shaft_speed, before, now * fleet.tick)
+    put_shaft(fleet.vehicles, vehicle, where(due, ShaftReading(shaft_speed), get_shaft(fleet.vehicles, vehicle)))
+    schedule_next(fleet, vehicle, THRUSTER_SPEED, timing, due)
 
 
 @compiled
@@ -236,22 +244,21 @@ def sense_altitude(fleet: Fleet, vehicle: int, now: int) -> None:
     if fleet.has_seabed > 0:
         timing = timing_of(fleet, vehicle, ALTIMETER)
         due = timing.next_sample <= now
-        if some(due):
-            then = vessel_then(fleet, vehicle, timing, now)
-            altitude = read_altimeter(
-                book_of(fleet, vehicle, fleet.tick),
-                0,
-                then,
-                seabed_below(fleet, vehicle, then),
-                noise_of(fleet, vehicle, ALTIMETER, timing, now),
-                sampling_of(fleet, timing, now),
-            )
-            if fleet.faults.num > 0:
-                before = get_altitude(fleet.vehicles, vehicle).altitude
-                altitude = number_in_fault(fleet, vehicle, ALTIMETER, altitude, before, now * fleet.tick)
-            reading = AltimeterReading(altitude)
-            put_altitude(fleet.vehicles, vehicle, where(due, reading, get_altitude(fleet.vehicles, vehicle)))
-            schedule_next(fleet, vehicle, ALTIMETER, timing, due)
+        then = vessel_then(fleet, vehicle, timing, now)
+        altitude = read_altimeter(
+            book_of(fleet, vehicle, fleet.tick),
+            0,
+            then,
+            seabed_below(fleet, vehicle, then),
+            noise_of(fleet, vehicle, ALTIMETER, timing, now),
+            sampling_of(fleet, timing, now),
+        )
+        if fleet.faults.num > 0:
+            before = get_altitude(fleet.vehicles, vehicle).altitude
+            altitude = number_in_fault(fleet, vehicle, ALTIMETER, altitude, before, now * fleet.tick)
+        reading = AltimeterReading(altitude)
+        put_altitude(fleet.vehicles, vehicle, where(due, reading, get_altitude(fleet.vehicles, vehicle)))
+        schedule_next(fleet, vehicle, ALTIMETER, timing, due)
 
 
 @compiled
@@ -268,21 +275,20 @@ def sense_velocity(fleet: Fleet, vehicle: int, now: int) -> None:
     """Velocity through the water, or over ground, by DVL."""
     timing = timing_of(fleet, vehicle, DVL)
     due = timing.next_sample <= now
-    if some(due):
-        then = vessel_then(fleet, vehicle, timing, now)
-        reading: DvlReading = read_dvl(
-            book_of(fleet, vehicle, fleet.tick),
-            0,
-            then,
-            water_then(fleet, vehicle, timing, now),
-            noise_of(fleet, vehicle, DVL, timing, now),
-            sampling_of(fleet, timing, now),
-            seabed_below(fleet, vehicle, then),
-        )
-        if fleet.faults.num > 0:
-            reading = velocity_in_fault(fleet, vehicle, reading, now * fleet.tick)
-        put_velocity(fleet.vehicles, vehicle, where(due, reading, get_velocity(fleet.vehicles, vehicle)))
-        schedule_next(fleet, vehicle, DVL, timing, due)
+    then = vessel_then(fleet, vehicle, timing, now)
+    reading: DvlReading = read_dvl(
+        book_of(fleet, vehicle, fleet.tick),
+        0,
+        then,
+        water_then(fleet, vehicle, timing, now),
+        noise_of(fleet, vehicle, DVL, timing, now),
+        sampling_of(fleet, timing, now),
+        seabed_below(fleet, vehicle, then),
+    )
+    if fleet.faults.num > 0:
+        reading = velocity_in_fault(fleet, vehicle, reading, now * fleet.tick)
+    put_velocity(fleet.vehicles, vehicle, where(due, reading, get_velocity(fleet.vehicles, vehicle)))
+    schedule_next(fleet, vehicle, DVL, timing, due)
 
 
 @compiled

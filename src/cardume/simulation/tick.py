@@ -1,6 +1,6 @@
 """One tick of the engine."""
 
-from cardume.compiler import Rows, at, compiled, load, negate, passing, some, store, where
+from cardume.compiler import Rows, at, compiled, inlined, load, negate, passing, some, store, where
 from cardume.onboard.agent import decide
 from cardume.onboard.mind import get_progress, get_whereabouts
 from cardume.onboard.phases import takes_part
@@ -118,9 +118,23 @@ def find_on_path(fleet: Fleet, vehicle: int, truth: VesselState, time: float) ->
 def health(fleet: Fleet, time: float) -> bool:
     """Note the first vehicle, signal and time at which a number is not one."""
     ill = load(fleet.trouble, CODE) > FINE
-    for i in range(fleet.size):
-        note_if_ill(fleet, i, time)
+    total = numbers_of(fleet, 0)
+    for i in range(1, fleet.size):
+        total = total + numbers_of(fleet, i)
+    if some(negate(total - total == 0.0)):  # x - x is 0 only for finite x
+        for i in range(fleet.size):
+            note_if_ill(fleet, i, time)
     return negate(some(negate(ill | (load(fleet.trouble, CODE) > FINE))))
+
+
+@inlined
+def numbers_of(fleet: Fleet, vehicle: int) -> float:
+    """The sum of what must be a number of a vehicle, whatever its units."""
+    vessel, water = get_vessel(fleet.vehicles, vehicle), get_water(fleet.vehicles, vehicle)
+    reference, place = get_reference(fleet.vehicles, vehicle), get_whereabouts(fleet.minds, vehicle)
+    state = vessel.north + vessel.east + vessel.depth + vessel.heading + vessel.surge + vessel.sway
+    asked = reference.heading + reference.speed + reference.depth
+    return state + asked + (water.north + water.east) + (place.north + place.east)
 
 
 @compiled
