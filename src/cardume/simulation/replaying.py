@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cardume.compiler import Layout, Rows, at, compiled, entry, fixed, load, passing, rows_of, store
+from cardume.compiler import Layout, Rows, at, compiled, entry, load, passing, rows_of, store
 from cardume.laws import COLUMNS, FAMILIES, MEMORY, WIDTH
 from cardume.onboard.estimation.position import estimate_position
 from cardume.onboard.mind import Asked, Mind, put_asked
@@ -58,7 +58,7 @@ def navigate_through(
         kept: [any] (n,) room for the memory of the position law.
         played: [any] (ticks * width,) filled with what it believes, by PLAYED.
     """
-    fleet = fixed(fleet_of(tables))
+    fleet = passing(fleet_of(tables))
     mind = passing(mind_of(fleet, vehicle))
     inbox_width = fleet.air.widest * fleet.air.messages
     for tick in range(len(played) // PLAYED_WIDTH):
