@@ -64,9 +64,7 @@ def fixes(flight: Flight, head: int, below: int) -> tuple[np.ndarray, np.ndarray
     told = np.flatnonzero(heard & (sender == head) & (receiver == below))
     carriers = [told[sent[told] > received[answer] - 1e-9][:1] for answer in answers]
     pairs = sorted(
-        (received[carrier[0]], sent[answer])
-        for answer, carrier in zip(answers, carriers, strict=True)
-        if len(carrier)
+        (received[carrier[0]], sent[answer]) for answer, carrier in zip(answers, carriers, strict=True) if len(carrier)
     )
     came, valid = np.array(pairs).T
     return came, np.maximum.accumulate(valid)
