@@ -18,6 +18,7 @@ from cardume.missions.fault_planning import plan_faults
 from cardume.missions.formats import read_plan
 from cardume.missions.geodesy import GeoPoint
 from cardume.missions.laying import lay_path
+from cardume.missions.maneuvering import known_of, maneuver_path, those_below
 from cardume.missions.medium_access import scheduled
 from cardume.missions.mission import Mission
 from cardume.missions.orders import deepest, depths_along, is_watched, separation_of, table_speed
@@ -66,11 +67,7 @@ def make_plan(mission: Mission, catalog: Catalog, memo: Memo = NO_MEMO) -> Plann
     speed = table_speed(mission, length)
     own = memo.recall("own path", (reference,), lambda: _formation_path(mission, reference, speed), speed)
 
-    def own_path(vehicle: Vehicle) -> np.ndarray:
-        parts = reference, vehicle.offset
-        return memo.recall("path", parts, lambda: _own_path(mission, vehicle, reference, speed), speed)
-
-    paths = [own_path(vehicle) for vehicle in mission.vehicles]
+    paths = _own_paths(mission, reference, own, speed, memo)
     water, field = _current(mission, origin, paths, catalog, memo)
     fleet = mission.bathymetry, mission.formation, mission.vehicles[0].coordination
 
@@ -139,6 +136,27 @@ def reference_path(mission: Mission, origin: GeoPoint | None) -> tuple[Reference
         plan = read_plan(Path(mission.path.file), origin)
         return plan.segments, plan.origin
     return _positioned(mission, "path", lambda: lay_path(mission.path)), origin
+
+
+def _own_paths(
+    mission: Mission, reference: ReferencePath, formation: np.ndarray, speed: float, memo: Memo
+) -> list[np.ndarray]:
+    """The path of every vehicle: first of those with a place in the formation, then of those that move about them."""
+
+    def place(vehicle: Vehicle) -> np.ndarray:
+        parts = reference, vehicle.offset
+        return memo.recall("path", parts, lambda: _own_path(mission, vehicle, reference, speed), speed)
+
+    paths = {vehicle.name: place(vehicle) for vehicle in mission.vehicles if vehicle.maneuver is None}
+
+    def maneuver(vehicle: Vehicle) -> np.ndarray:
+        others = those_below(mission, vehicle)
+        known, below = known_of(vehicle, others), [paths[other.name] for other in others]
+        make = partial(maneuver_path, mission, vehicle, known, formation, below)
+        return memo.recall("maneuver", (formation, *below), make, (vehicle.name, vehicle.maneuver, known))
+
+    paths |= {vehicle.name: maneuver(vehicle) for vehicle in mission.vehicles if vehicle.maneuver is not None}
+    return [paths[vehicle.name] for vehicle in mission.vehicles]
 
 
 def _own_path(mission: Mission, vehicle: Vehicle, reference: ReferencePath, speed: float) -> np.ndarray:

@@ -177,10 +177,11 @@ class Group(Kind):
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Variant(Kind):
-    """A section that becomes the record named by its key `type`, or another."""
+    """A section that becomes the record named by its selector; `words` are texts that stand for a whole record."""
 
     records: Mapping[str, type] = dataclasses.field(hash=False)
     selector: str = "type"
+    words: Mapping[str, Any] = dataclasses.field(default_factory=dict, hash=False)
 
 
 @dataclasses.dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Annotated, Any
 
+from cardume.missions.maneuver import MANEUVERS, AnyManeuver
 from cardume.missions.route import Angle, Meters, Point
 from cardume.missions.schema import (
     NOT_NEGATIVE,
@@ -22,6 +23,7 @@ from cardume.missions.schema import (
     Profiled,
     Quantity,
     Shared,
+    Variant,
     Word,
     fields_of,
 )
@@ -250,6 +252,11 @@ class Vehicle:
         float | None, Quantity("m", POSITIVE), "above the seabed to keep, instead of a depth; needs an altimeter"
     ] = None
     offset: Annotated[Offset, Group(Offset), "its place in the formation"] = Offset()
+    maneuver: Annotated[
+        AnyManeuver | None,
+        Variant(MANEUVERS, words={"none": None}),
+        "instead: how it moves about those below, so that its ranges tell more",
+    ] = None
     start: Annotated[
         RelativeStart | AbsoluteStart, Forms((RelativeStart, AbsoluteStart)), "where it is when the mission begins"
     ] = RelativeStart()

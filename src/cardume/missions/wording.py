@@ -105,7 +105,8 @@ def _group(kind: Group) -> str:
 
 @wanted.register
 def _variant(kind: Variant) -> str:
-    return f"a mapping with {kind.selector}: one of {', '.join(kind.records)}"
+    words = "".join(f", or '{word}'" for word in kind.words)
+    return f"a mapping with {kind.selector}: one of {', '.join(kind.records)}{words}"
 
 
 @wanted.register

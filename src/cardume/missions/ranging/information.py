@@ -67,6 +67,56 @@ def mission_information(
     return np.asarray(told if prior is None else told + prior)
 
 
+def log_determinants_along(
+    times: np.ndarray,
+    offsets: np.ndarray,
+    sigma: float,
+    prior: np.ndarray,
+    *,
+    velocity_noise: float = 0.0,
+    current_noise: float = 0.0,
+    below: float = 0.0,
+) -> np.ndarray:
+    """How much is known of position and current after each range of a target whose velocity and current wander.
+
+    log det of the inverse of P,   P' = F P F' + Q between ranges,   P^-1 + g g' / sigma^2 at each,   g = (h / r) (l, 0)
+
+    h is the level and r the slant range: of a target below a range tells less of where it is in plan.
+
+    Args:
+        times: (n,) [s] of the ranges.
+        offsets: (..., n, 2) [m] target less source in plan, of as many maneuvers as wanted.
+        sigma: [m] of each slant range.
+        prior: (4, 4) covariance of north, east [m] and current north, east [m/s] before the first.
+        velocity_noise: [m^2/s] q_v, as `kalman_replay` has it.
+        current_noise: [m^2/s^3] q_c.
+        below: [m] how much deeper the target is than the source.
+
+    Returns:
+        (..., n) [-]
+
+    Source: theory row HH, with what is forgotten between the ranges as in row V.
+    """
+    level = np.hypot(offsets[..., 0], offsets[..., 1])
+    lines = offsets / np.maximum(np.hypot(level, below), 1e-9)[..., None]
+    covariance = np.broadcast_to(prior, (*offsets.shape[:-2], 4, 4)).copy()
+    known, unit = np.empty(offsets.shape[:-1]), np.eye(2)
+    for k, step in enumerate(np.diff(times, prepend=times[0])):
+        onward = np.block([[unit, step * unit], [0.0 * unit, unit]])
+        noise = np.block(
+            [
+                [(velocity_noise * step + current_noise * step**3 / 3.0) * unit, 0.5 * current_noise * step**2 * unit],
+                [0.5 * current_noise * step**2 * unit, current_noise * step * unit],
+            ]
+        )
+        covariance = onward @ covariance @ onward.T + noise
+        across = covariance[..., :2] @ lines[..., k, :, None]
+        innovation = np.sum(lines[..., k, :] * across[..., :2, 0], axis=-1) + sigma**2
+        covariance = covariance - across @ np.swapaxes(across, -1, -2) / innovation[..., None, None]
+        known[..., k] = -np.linalg.slogdet(covariance)[1]
+    return known
+
+
 def condition_number(information: np.ndarray, duration: float) -> float:
     """How much better the best known direction is known than the worst, the current counted as the way of a mission.
 

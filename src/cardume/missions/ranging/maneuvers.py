@@ -1,7 +1,7 @@
 """How a vehicle that measures ranges moves so that they tell more: about the predicted track of its target.
 
-Circle, spiral and zig-zag are closed forms; `steered` looks ahead and turns to where the information grows
-most.  All stay within the speed that the vehicle has.
+Circle, spiral and zig-zag have a shape; `steered` looks ahead and turns to where the information grows most.
+All stay within the speed that the vehicle has.
 """
 
 import math
@@ -26,7 +26,7 @@ class Choice(NamedTuple):
 def circle(
     target: np.ndarray, times: np.ndarray, *, radius: float, speed_max: float, bearing: float = 0.0
 ) -> np.ndarray:
-    """Around the target, as fast as goes: clockwise, seen from it.
+    """Around the target, clockwise seen from it, always at the same speed over ground.
 
     Args:
         target: (n, 2) [m] its predicted track, north and east.
@@ -47,30 +47,46 @@ def circle(
 def spiral(
     target: np.ndarray, times: np.ndarray, *, radius: float, growth: float, speed_max: float, bearing: float = 0.0
 ) -> np.ndarray:
-    """Around the target, farther with every turn.
+    """Around the target, farther with every turn, always at the same speed over ground.
+
+    r' = g,   r theta' = -v . t + sqrt(U^2 - (v . l + g)^2)
+
+    with v the target's velocity, l from it to the source, t across l, clockwise, and U the speed: with the target it
+    goes round slowly, against it quickly, and it never has to stop.
 
     Args:
         target: (n, 2) [m]
         times: (n,) [s]
-        radius: [m] at first.
-        growth: [m/s] of it, >= 0.
-        speed_max: [m/s] over ground.
-        bearing: [rad] at first.
+        radius: [m] r at first.
+        growth: [m/s] g, >= 0.
+        speed_max: [m/s] U.
+        bearing: [rad] theta at first.
 
     Returns:
         (n, 2) [m]
 
     Raises:
-        ValueError: the target is as fast as the source.
+        ValueError: the target is as fast as the source, or what is left is less than the growth.
     """
     spare = _spare(target, times, speed_max)
     if growth >= spare:
         raise ValueError(f"a radius that grows by {growth:g} m/s leaves nothing of {spare:g} m/s; let it grow slower")
-    around = math.sqrt(spare**2 - growth**2)
-    radii = radius + growth * (times - times[0])
-    turned = around / radius * (times - times[0]) if growth == 0.0 else around / growth * np.log(radii / radius)
-    angle = bearing + turned
-    return np.asarray(target + radii[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    velocity, radii = np.gradient(target, times, axis=0), radius + growth * (times - times[0])
+
+    def rate(angle: float, velocity: np.ndarray, radius: float) -> float:
+        sine, cosine = math.sin(angle), math.cos(angle)
+        out = float(velocity @ (cosine, sine)) + growth
+        return (math.sqrt(speed_max**2 - out**2) - float(velocity @ (-sine, cosine))) / radius
+
+    angles = [bearing]
+    for k, step in enumerate(np.diff(times)):
+        middle, between = 0.5 * (velocity[k] + velocity[k + 1]), 0.5 * (radii[k] + radii[k + 1])
+        first = rate(angles[-1], velocity[k], radii[k])
+        second = rate(angles[-1] + 0.5 * step * first, middle, between)
+        third = rate(angles[-1] + 0.5 * step * second, middle, between)
+        last = rate(angles[-1] + step * third, velocity[k + 1], radii[k + 1])
+        angles.append(angles[-1] + step / 6.0 * (first + 2.0 * second + 2.0 * third + last))
+    return np.asarray(target + radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1))
 
 
 def zigzag(target: np.ndarray, times: np.ndarray, *, width: float, astern: float, speed_max: float) -> np.ndarray:
@@ -197,5 +213,8 @@ def _spare(target: np.ndarray, times: np.ndarray, speed_max: float) -> float:
     """What is left [m/s] of a speed beside the target's."""
     spare = speed_max - fastest(target, times)
     if spare <= 0.0:
-        raise ValueError(f"the target goes at {speed_max - spare:g} m/s, the source at most at {speed_max:g} m/s")
+        raise ValueError(
+            f"the target goes at {speed_max - spare:.3g} m/s, the source at most at {speed_max:g} m/s;"
+            " make the source faster or the target slower"
+        )
     return spare
