@@ -1,5 +1,6 @@
 """`python -m benchmarks`: measure, print, and compare with another commit."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -37,7 +38,7 @@ WORKLOADS = {
     "sizes": sizes.measure,
     "study": studies.measure,
 }
-WIDTH = 120  # of tables where there is no terminal
+WIDTH = 120  # of tables where there is no terminal, and no COLUMNS
 SMOKE_STEPS = 400  # of the calibration loop
 
 
@@ -55,7 +56,8 @@ def main(only: tuple[str, ...], kept: Path | None, against: Path | None, smoke: 
     except ValueError as problem:
         raise click.BadParameter(str(problem), param_hint="--against") from None
     console, messages = (
-        Console(stderr=stream, width=None if stream_is_terminal(stream) else WIDTH) for stream in (False, True)
+        Console(stderr=stream, width=None if stream_is_terminal(stream) or "COLUMNS" in os.environ else WIDTH)
+        for stream in (False, True)
     )
     calibration = Calibration(SMOKE_STEPS) if smoke else Calibration()
     rows, failed = measure_all(only or tuple(WORKLOADS), Effort(calibration, smoke), messages)
