@@ -235,6 +235,13 @@ def test_a_tuning_that_continues_ends_as_if_it_had_never_stopped(
     assert keep(again, directory)[1] == keep(whole, tmp_path / "whole")[1]
 
 
+def test_nothing_that_is_known_is_forgotten_while_a_tuning_continues(tmp_path: Path) -> None:
+    directory, _ = keep(tune_noisy(**After("tune", 6).how), tmp_path / "it")
+    counts: list[int] = []
+    tune_noisy(resume=directory, remember=lambda settings, tries: counts.append(len(tries)))
+    assert counts[:7] == [6, 6, 6, 6, 6, 6, 7]
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -108,12 +108,12 @@ def tune(**given: Any) -> int:
 def _tune(request: Request, stopping: Stopping) -> int:
     from cardume.missions.results import choose_destination
     from cardume.report.tuning.words import tuning_words
-    from cardume.studies.tuning.keeping import keep_tuning
+    from cardume.studies.tuning.keeping import Journal, keep_tuning
     from cardume.studies.tuning.resuming import read_tuning
     from cardume.studies.tuning.tune import tune as search
 
     asked, name = request.asked, folder_name(request.mission, "tuned")
-    destination = choose_destination(name, asked.output or request.resume, read_tuning)
+    journal = Journal(choose_destination(name, asked.output or request.resume, read_tuning), name, version())
     with Progress(asked.is_talkative) as progress:
 
         def note(stage: str, done: int, total: int) -> None:
@@ -133,6 +133,7 @@ def _tune(request: Request, stopping: Stopping) -> int:
             overrides=asked.overrides,
             allow_code=asked.allow_code,
             resume=request.resume,
+            remember=journal,
             progress=note,
             should_stop=stopping.is_asked,
         )
@@ -144,7 +145,7 @@ def _tune(request: Request, stopping: Stopping) -> int:
 
     drawing = Drawing(draw, is_wanted=not (asked.no_figures or stopping.is_asked()))
     words = tuning_words(tuning)
-    directory, summary = keep_tuning(destination, name, tuning, words=words, version=version(), draw=drawing)
+    directory, summary = keep_tuning(journal.destination, name, tuning, words=words, version=version(), draw=drawing)
     _report(request, tuning, words, directory, summary)
     if tuning.is_interrupted:
         again = shlex.join(["cardume", "tune", request.mission, *_same(request), "--resume", str(directory)])

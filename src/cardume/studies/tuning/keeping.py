@@ -11,14 +11,66 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cardume.missions.results import Destination, keep_together
+from cardume.missions.atomic import write_file
+from cardume.missions.results import Destination, ResultsError, choose_destination, keep_together, refusal
 from cardume.simulation.flight import METRICS
-from cardume.studies.tuning.resuming import FILE_NAME, TABLE_NAME, described, to_csv
+from cardume.studies.tuning.resuming import FILE_NAME, TABLE_NAME, described, read_tuning, to_csv
 from cardume.studies.tuning.searching import Try
+from cardume.studies.tuning.trying import Settings
 from cardume.studies.tuning.tune import Tuning
 
 FORMAT_VERSION = 1
 MISSION_NAME = "mission.yaml"
+HOW_ON = "what was tried before is kept: mend that, and continue with --resume"
+
+
+class Journal:
+    """Keeps tries while they are made, so that a search that is killed continues where it was.
+
+    With the first try an earlier tuning makes place.
+
+    Args:
+        destination: from `choose_destination`, with `read_tuning`.
+        name: that it was chosen for.
+        version: of cardume.
+    """
+
+    def __init__(self, destination: Destination, name: str, version: str) -> None:
+        self._destination, self._name, self._version = destination, name, version
+        self._is_begun = False
+
+    def __call__(self, settings: Settings, tries: Sequence[Try]) -> None:
+        """Write all tries; the file holds those before or these, whatever happens meanwhile.
+
+        Args:
+            settings: of the search.
+            tries: so far.
+
+        Raises:
+            ResultsError: the disk is full, or refused otherwise.
+        """
+        text = to_csv(settings, tries)
+        if self._is_begun:
+            try:
+                write_file(self._destination.directory / TABLE_NAME, text.encode())
+            except OSError as problem:
+                raise ResultsError(refusal(self._destination.directory, problem, HOW_ON)) from None
+            return
+        about = {"cardume_tune": FORMAT_VERSION, "version": self._version, "mission": settings.mission.name}
+        about |= {"interrupted": True, "settings": described(settings)}
+        directory, _ = keep_together(
+            self._destination,
+            self._name,
+            FILE_NAME,
+            lambda _: {TABLE_NAME: text},
+            lambda files: about | {"files": files},
+        )
+        self._destination, self._is_begun = choose_destination(self._name, directory, read_tuning), True
+
+    @property
+    def destination(self) -> Destination:
+        """Where the whole tuning goes, in the place of its tries."""
+        return self._destination
 
 
 def keep_tuning(

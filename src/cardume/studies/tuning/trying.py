@@ -75,6 +75,9 @@ class Settings:
             )
 
 
+Remember = Callable[[Settings, Sequence[Try]], None]
+
+
 @dataclass
 class Tries:
     """Flies tries and remembers them.
@@ -84,6 +87,7 @@ class Tries:
         progress: called with "compile", "tune" or "compare", how much is done, and how much there is.
         should_stop: asked every few milliseconds.
         known: of an earlier search with the same settings, by their values; these are not flown again.
+        remember: called after each try with the settings and all tries that are known by now, for whoever keeps them.
         is_random: whether a run differs from the next.
         made: all, in order; the first is the mission as it is.
     """
@@ -92,6 +96,7 @@ class Tries:
     progress: Progress
     should_stop: Callable[[], bool]
     known: Known = field(default_factory=dict)
+    remember: Remember = lambda settings, tries: None
     is_random: bool = True
     made: list[Try] = field(default_factory=list)
     _seen: dict[tuple[float, ...], Try] = field(default_factory=dict)
@@ -202,6 +207,8 @@ class Tries:
     def _keep(self, found: Try) -> None:
         self._seen[found.values] = found
         self.made.append(found)
+        left = [one for values, one in self.known.items() if values not in self._seen]
+        self.remember(self.settings, [*self.made, *left])
         self.progress("tune", len(self.made), self.settings.evaluations)
 
 

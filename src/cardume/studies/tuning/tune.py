@@ -16,7 +16,7 @@ from cardume.studies.tuning.evidence import Evidence
 from cardume.studies.tuning.knobs import Knob, make_knobs, with_values
 from cardume.studies.tuning.resuming import known_tries
 from cardume.studies.tuning.searching import Enough, Goal, Try, best_of, front_of, search_one, search_several
-from cardume.studies.tuning.trying import Settings, Tries
+from cardume.studies.tuning.trying import Remember, Settings, Tries
 
 FEWEST_TRIES, MOST_TRIES, MOST_RUNS, MOST_METRICS = 10, 10_000, 10_000, 3
 
@@ -99,6 +99,7 @@ def tune(
     overrides: Sequence[str] = (),
     allow_code: Iterable[str | Path] = (),
     resume: str | Path | None = None,
+    remember: Remember = lambda settings, tries: None,
     progress: Progress = lambda stage, done, total: None,
     should_stop: Callable[[], bool] = lambda: False,
 ) -> Tuning:
@@ -123,6 +124,7 @@ def tune(
         allow_code: folders from which laws may be imported.
         resume: directory of the same tuning, interrupted; what was tried there is not flown again, and the end is the
             same.
+        remember: called after each try with what is searched and all tries known by now, for whoever keeps them.
         progress: called with "compile", "tune" or "compare", how much is done, and how much there is.
         should_stop: asked every few milliseconds; what was found by then is given.
 
@@ -151,7 +153,8 @@ def tune(
         folders=folders,
     )
     settings.check_seeds()
-    tries = Tries(settings, progress, should_stop, known_tries(Path(resume), settings) if resume else {})
+    known = known_tries(Path(resume), settings) if resume else {}
+    tries = Tries(settings, progress, should_stop, known, remember)
     _search(tries)
     if not tries.made:
         raise InputError("interrupted before anything was flown")
