@@ -124,7 +124,7 @@ def layout_of(directory: Path, cases: Cases) -> Layout:
         others = {RUN, VEHICLE, REQUIREMENT, *OF_REQUIREMENTS, *(axis.key for axis in cases.axes)}
         told = tuple(map(str, group[REQUIREMENT][:])) if group[REQUIREMENT].size else ()
         if told != tuple(one.name for one in wanted):
-            raise ValueError(f"its requirements are {', '.join(told)}")
+            raise damaged(directory, f"its requirements are {', '.join(told)}")
         names = [name for name in group if name not in others and not name.startswith(CHANCE)]
         variables = {name: _variable(name, group[name], swept) for name in names}
         chances = {name.removeprefix(CHANCE): group[name][:] for name in group if name.startswith(CHANCE)}
@@ -138,6 +138,8 @@ def layout_of(directory: Path, cases: Cases) -> Layout:
             chances=chances,
             attrs=attrs,
         )
+    except DataError:
+        raise
     except Exception as problem:  # whatever zarr finds wrong in its files
         raise damaged(directory, problem) from None
 
