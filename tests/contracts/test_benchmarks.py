@@ -10,7 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.reference.native import vector_programs
+
 ROOT = Path(__file__).parents[2]
+WIDTHS = [f"C, side by side, {bits} bits" for bits in vector_programs()]  # of this processor
 CASES = {
     "mission": ["three MEDUSAs", "three kinematic vehicles"],
     "command": ["cardume run paper/figure-5 --no-figures"],
@@ -25,7 +28,7 @@ CASES = {
     "reference": [
         "cardume, one mission alone",
         "cardume, scalar, 2 threads",
-        *(["C, one mission alone", "C, scalar, 2 threads", "C, side by side"] if shutil.which("gcc") else []),
+        *(["C, one mission alone", "C, scalar, 2 threads", *WIDTHS] if shutil.which("gcc") else []),
         "NumPy",
         "PythonVehicleSimulator",
         "beside C, scalar",

@@ -52,11 +52,11 @@ def navigate_through(
         tables: (n,) arrays of a mission in which the vehicle has the laws that are to be judged; changed in place.
         vehicle: [-] its place in the engine's order.
         first: [ticks] at which the part begins.
-        readings: [any] (ticks * width,) by READINGS, what its sensors say (NaN: nothing, a fix only when it is new) and
-            what it had asked of its autopilot in the tick before.
-        inboxes: [any] (ticks * width,) its inbox in each tick.
+        readings: [any] (n,) rows of READINGS: what its sensors say in each tick, NaN for nothing, a fix only when it
+            is new; and what it had asked of its autopilot in the tick before.
+        inboxes: [any] (n,) its inbox in each tick.
         kept: [any] (n,) room for the memory of the position law.
-        played: [any] (ticks * width,) filled with what it believes, by PLAYED.
+        played: [any] (n,) rows of PLAYED, filled with what it believes in each tick.
     """
     fleet = passing(fleet_of(tables))
     mind = passing(mind_of(fleet, vehicle))
