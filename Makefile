@@ -82,6 +82,7 @@ pictures: setup-dev
 	@$(BIN)/python examples/gallery.py
 	@$(BIN)/python examples/studies.py
 	@$(BIN)/python examples/modem.py
+	@$(BIN)/python examples/talking.py
 	@$(BIN)/python examples/ranging.py
 
 size: setup

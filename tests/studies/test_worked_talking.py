@@ -1,0 +1,48 @@
+"""The ways to talk of docs/tutorials/talk-by-events.md, flown 200 times each: thresholds, and what the page prints."""
+
+import sys
+from importlib import util
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "tutorials" / "talk-by-events.md"
+
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(3000)]
+
+
+@pytest.fixture(scope="module")
+def example() -> ModuleType:
+    """examples/talking.py, which flies and draws them."""
+    spec = util.spec_from_file_location("talking_example", ROOT / "examples" / "talking.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_a_tenth_of_the_messages_costs_less_than_a_tenth_of_the_error(example: ModuleType) -> None:
+    """At most 10 % of the traffic of everybody every second, and surely at most 10 % more coordination error."""
+    assert len(example.flown(example.TENTH).sent) == 200
+    assert np.isfinite(example.flown(example.TENTH).coordination).all()
+    assert example.traffic(example.TENTH) <= 0.10
+    assert example.costs(example.TENTH)[2] <= 0.10
+
+
+def test_at_any_traffic_the_mixture_costs_least(example: ModuleType) -> None:
+    """Pareto: the clock alone, and events alone, lie above the mixture's curve where their traffic is alike."""
+    points = sorted((example.traffic(arm), example.costs(arm)[0]) for arm in example.MIXTURES)
+    share, cost = np.array(points).T
+    for arm in [*example.CLOCKS, *example.ALL_EVENTS]:
+        if share[0] <= example.traffic(arm) <= share[-1]:
+            assert example.costs(arm)[1] > np.interp(example.traffic(arm), share, cost), arm
+
+
+def test_the_page_prints_what_they_give(example: ModuleType) -> None:
+    text = PAGE.read_text(encoding="utf-8").partition("<!-- table: talking -->\n")[2].partition("\n\n")[0]
+    assert text.splitlines()[2:] == example.table_rows()
