@@ -133,7 +133,7 @@ with the starboard e.
 def make_law(name: str) -> SimpleNamespace:
     def parameter(name: str, default: float, unit: str, low: float, high: float) -> SimpleNamespace:
         bounds = {"low": low, "high": high, "low_open": True, "high_open": False}
-        return SimpleNamespace(name=name, default=default, unit=unit, **bounds)
+        return SimpleNamespace(name=name, default=default, unit=unit, words=(), **bounds)
 
     inf = float("inf")
     parameters = (parameter("lookahead", 5.0, "m", 0.0, inf), parameter("limit", 0.5236, "rad", -inf, 1.5707963267949))
@@ -211,6 +211,7 @@ def test_list_as_json_and_quietly(stage: Stage, cardume: Cardume, laws: None) ->
         "high": None,
         "low_open": True,
         "high_open": False,
+        "words": [],
     }
     assert cardume("list", "guidance", "-q").out == "line_of_sight\n"
     assert {"name", "summary", "unit", "wanted"} == set(json.loads(cardume("list", "metrics", "--json").out)[0])

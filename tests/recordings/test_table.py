@@ -9,6 +9,7 @@ import pytest
 
 from cardume.errors import DataError, InputError
 from cardume.missions.recordings.replaying import Request, read_start, replay
+from cardume.signals import Fix
 from recordings.flown import apart, surface
 
 
@@ -119,6 +120,9 @@ def test_ranges_from_two_places(tmp_path: Path) -> None:
     away = np.hypot(*(part.believed.position - part.believed.truth).T)
     assert np.hypot(*(part.believed.before[0, :2] - part.believed.truth[0])) == pytest.approx(5.0)
     assert away[-100:].max() < 0.1
+    first = Fix(*part.believed.fixes[np.isfinite(part.believed.fixes[:, 0])][0])
+    assert first.level_range == pytest.approx(math.hypot(20.0, 30.0))
+    assert first.north_variance == pytest.approx(0.1**2 * (20.0**2 + 30.0**2 + 12.0**2) / (20.0**2 + 30.0**2))
     by_bank = replay(
         Request(path=path, start=(3.0, 4.0), position={"law": "range_filter", "position": "5 m", "range_scale": "0"})
     )

@@ -190,8 +190,8 @@ def _say(entry: Mapping[str, Any]) -> None:
 
 def _one_line(parameter: Mapping[str, Any]) -> str:
     unit, ends = parameter["unit"], []
-    if parameter["words"]:
-        return f"{parameter['name']:<20} {parameter['default']:<12} of {', '.join(parameter['words'])}"
+    if words := parameter["words"]:
+        return f"{parameter['name']:<20} {parameter['default']:<12} of {', '.join(words)}"
     if parameter["low"] is not None:
         ends.append(f"{'above' if parameter['low_open'] else 'at least'} {show_quantity(parameter['low'], unit)}")
     if parameter["high"] is not None:

@@ -49,14 +49,20 @@ def row_of(fleet: Fleet, listener: int, sender: int, slot: int) -> int:
 
 
 @compiled
+def is_speaking(fleet: Fleet, sender: int, slot: int, time: float) -> bool:
+    """Whether the modem of a vehicle is still sending a message of its own [-]."""
+    own = get_on_air(fleet.air.on_air, row_of(fleet, sender, sender, slot))
+    return (own.start <= time) & (time < own.end)
+
+
+@compiled
 def sound_everywhere(fleet: Fleet, sender: int, time: float) -> None:
     """Note when, and how loud, a vehicle's message of this tick is heard by each, itself among them."""
     sends, slot = load(fleet.air.sending, sender) > 0.5, slot_of(fleet, sender)
     medium, here = get_medium(fleet.air.modems, sender), get_vessel(fleet.vehicles, sender)
-    lasts, busy = airtime(medium, medium.payload), load(fleet.air.sending, sender) < -1.0
-    for earlier in range(fleet.air.slots):
-        own = get_on_air(fleet.air.on_air, row_of(fleet, sender, sender, earlier))
-        busy = busy | ((own.start <= time) & (time < own.end))
+    lasts, busy = airtime(medium, medium.payload), is_speaking(fleet, sender, 0, time)
+    for earlier in range(1, fleet.air.slots):
+        busy = busy | is_speaking(fleet, sender, earlier, time)
     for listener in range(fleet.size):
         there, row = get_vessel(fleet.vehicles, listener), row_of(fleet, listener, sender, slot)
         away = hypot(hypot(there.north - here.north, there.east - here.east), there.depth - here.depth)
@@ -65,8 +71,8 @@ def sound_everywhere(fleet: Fleet, sender: int, time: float) -> None:
             heard = OnAir(start, start + lasts, OWN_LEVEL + 0.0 * away)
         else:
             heard = OnAir(start, start + lasts, received_level(medium, away))
-        none = OnAir(SILENT + 0.0 * away, SILENT + 0.0 * away, 0.0 * away)
-        put_on_air(fleet.air.on_air, row, where(sends, where(busy, none, heard), get_on_air(fleet.air.on_air, row)))
+        heard = where(busy, OnAir(SILENT, SILENT, 0.0), heard)
+        put_on_air(fleet.air.on_air, row, where(sends, heard, get_on_air(fleet.air.on_air, row)))
         lose(fleet, listener, sender, slot, sends & busy)
 
 

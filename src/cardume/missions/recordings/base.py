@@ -54,11 +54,12 @@ class Sighted(NamedTuple):
     source: str  # who or what measured it
     north: float  # [m] of the vehicle; where `range` is a number, of the source
     east: float  # [m]
-    north_variance: float = np.nan  # [m^2] NaN: not told
+    north_variance: float = np.nan  # [m^2] of north and east; NaN: not told
     covariance: float = np.nan  # [m^2]
     east_variance: float = np.nan  # [m^2]
     range: float = np.nan  # [m] slant, or level where `depth` is NaN; NaN: a position
     depth: float = np.nan  # [m] of the source of a slant range
+    range_variance: float = np.nan  # [m^2] NaN: not told
 
 
 class Way(NamedTuple):

@@ -164,6 +164,7 @@ def _told(sighted: Sighted) -> list[float]:
         covariance=sighted.covariance,
         east_variance=sighted.east_variance,
         range=sighted.range,
+        range_variance=sighted.range_variance,
         depth=sighted.depth,
     )
     return [*told]

@@ -188,7 +188,6 @@ def _sighted(
     if math.isfinite(value("range")):
         if not math.isfinite(value("source_north") + value("source_east")):
             raise DataError(f"{place}:range: needs source_north and source_east, where it was measured from")
-        variance = value("range_sigma") ** 2
         found.append(
             Sighted(
                 time,
@@ -196,11 +195,12 @@ def _sighted(
                 source if source != "fixes" else f"{value('source_north'):g},{value('source_east'):g}",
                 value("source_north"),
                 value("source_east"),
-                variance,
-                0.0 * variance,
-                variance,
+                0.0,
+                0.0,
+                0.0,
                 value("range"),
                 value("source_depth"),
+                value("range_sigma") ** 2,
             )
         )
     return found

@@ -269,9 +269,9 @@ def corrected(belief: Belief, fix: Fix, doubts: Doubts) -> Belief:
     cc = plus(before.cc, where(lost, doubts.current, 0.0), UNIT)
     seen = _seen(fix, mean, pp, doubts)
     north, east, inverse = seen.north, seen.east, seen.weight
-    odd = north * (inverse.nn * north + inverse.ne * east) + east * (inverse.en * north + inverse.ee * east)
+    nis = north * (inverse.nn * north + inverse.ne * east) + east * (inverse.en * north + inverse.ee * east)
     wide = 1.0 + was.rejected
-    believed = lost | (odd <= doubts.gate * wide * wide)
+    believed = lost | (nis <= doubts.gate * wide * wide)
     k_p = times(pp, inverse)
     k_c, k_a = transposed_times(before.pc, inverse), transposed_times(before.pa, inverse)
     blocks = Blocks(
@@ -327,8 +327,8 @@ def _ranged(fix: Fix, mean: Mean, pp: Block, noise: Block) -> Innovation:
     across = pp.nn * e * e - 2.0 * pp.ne * n * e + pp.ee * n * n
     more = 0.5 * across / h
     along = n * n * (pp.nn + noise.nn) + 2.0 * n * e * (pp.ne + noise.ne) + e * e * (pp.ee + noise.ee)
-    odd, weight = fix.level_range - distance - more, 1.0 / (along + 2.0 * more * more)
-    return Innovation(odd * n, odd * e, Block(weight * n * n, weight * n * e, weight * n * e, weight * e * e))
+    error, weight = fix.level_range - distance - more, 1.0 / (along + 2.0 * more * more)
+    return Innovation(error * n, error * e, Block(weight * n * n, weight * n * e, weight * n * e, weight * e * e))
 
 
 @compiled
