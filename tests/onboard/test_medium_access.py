@@ -12,7 +12,9 @@ from scipy.integrate import quad
 from cardume.errors import MissionError
 from cardume.maths.random import random_key, uniforms
 from cardume.missions.medium_access import broadcast_slot, cycle_of, slot_of, two_way_slot
-from cardume.onboard.mind import OTHERS, Outlook
+from cardume.onboard.mind import OTHERS, UNTOLD, Outlook
+from cardume.signals import Report, Sighting
+from cardume.simulation.fleet import OnPath
 from cardume.simulation.flight import Flight
 from cardume.simulation.plan import VehiclePlan
 from cardume.world.acoustics.medium import medium_of
@@ -340,3 +342,30 @@ def test_numbers_are_rounded_where_the_codec_is_compact():
     assert np.abs(states / 0.25 - np.round(states / 0.25)).max() < 1e-9
     loose = exact.inbox[:, :, 4][np.isfinite(exact.inbox[:, :, 4])]
     assert np.abs(loose / 0.25 - np.round(loose / 0.25)).max() > 0.1
+
+
+def test_what_is_told_of_others_is_what_the_codec_would_have_read():
+    """Of every message in an inbox: one age for fix and state, in its steps; of a silent one no speed."""
+    text = TEXT.format(schedule="tdma, range: 200 m", channel="codec: compact", duration=30.0, topology="complete")
+    seen = watch(plan_of(text.replace("name: port,", "name: port, messaging: none,")))
+    assert seen.names == ["port", "starboard", "surface"]
+    size, width = 3, len(Sighting._fields)
+    told = seen.inbox.reshape(len(seen.inbox), -1, seen.inbox.shape[-1])
+    heads, sightings = told[..., 1 : 1 + len(Report._fields)], told[..., 1 + len(Report._fields) :]
+    times = heads[..., Report._fields.index("time_of_validity")]
+    found = sightings.reshape(*told.shape[:2], size, width)
+    field = {name: found[..., k] for k, name in enumerate(Sighting._fields)}
+    has_fix = np.isfinite(field["north"])
+    assert has_fix.any(axis=(0, 1)).tolist() == [True, True, False]  # the head sees the other two
+    ages = (times[..., None] - field["time_of_fix"])[has_fix]
+    assert np.abs(ages / 0.4 - np.round(ages / 0.4)).max() < 1e-6
+    assert (field["time_of_fix"] == field["time_of_validity"])[has_fix].all()
+    assert np.abs(field["north"][has_fix] / 0.2 - np.round(field["north"][has_fix] / 0.2)).max() < 1e-6
+    assert np.isnan(field["north_variance"]).all()
+    unheard = has_fix[..., 0]
+    assert (field["phase"][..., 0][unheard] == UNTOLD).all()
+    assert np.isnan(field["path_speed"][..., 0][unheard]).all()
+    assert (field["phase"][..., 1][has_fix[..., 1]][-50:] == 4.0).all()
+    believed = seen.tables.others.reshape(size, size, OTHERS.width)[1, 0, OTHERS.column(Outlook, "state")]
+    true = seen.in_tick(OnPath, "coordination_state")[-1, 0]
+    assert believed == pytest.approx(true, abs=1.5)  # starboard goes by what the head said of port
