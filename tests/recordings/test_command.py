@@ -12,7 +12,7 @@ import yaml
 
 from cardume.cli import main as program, replay as command
 from cardume.missions.log import read_log
-from cardume.missions.recordings.reading import KINDS
+from cardume.missions.recordings.reading import KINDS, MEANINGS
 from recordings.flown import fly_to
 
 
@@ -86,6 +86,9 @@ def test_its_log_is_taken_by_other_commands(cardume, tmp_path: Path) -> None:
     lines = json.loads((tmp_path / "track.geojson").read_text())["features"]
     longitude, latitude = lines[0]["geometry"]["coordinates"][0][:2]
     assert (len(lines), latitude, longitude) == (2, pytest.approx(38.7, abs=1e-4), pytest.approx(-9.1, abs=1e-4))
+    assert cardume("report", "runs/replay-boat/001", "--figure", "plan")[0] == 0
+    code, _, complaint = cardume("report", "runs/replay-boat/001")
+    assert (code, "this is a replay" in complaint) == (2, True)
     code, _, complaint = cardume("replay", "runs/replay-boat/001")
     assert (code, "the log of a replay" in complaint) == (2, True)
 
@@ -138,4 +141,4 @@ def test_what_cannot_be_done_is_said(cardume, tmp_path: Path, arguments: list[st
 
 
 def test_the_formats_are_the_same_everywhere() -> None:
-    assert command.KINDS == KINDS
+    assert command.KINDS == KINDS == tuple(MEANINGS)

@@ -26,13 +26,13 @@ KEYS = {
 
 
 @click.command("list", short_help="List laws, missions, metrics, paths, formats.")
-@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|paths|formats|MODULE:LAW]")
+@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|paths|formats|recordings|MODULE:LAW]")
 @allow_code_option
 @quiet_option
 @json_option
 def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
-    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, the types of paths, or the
-    formats of path files and of what is made of a run.
+    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, the types of paths, the
+    formats of path files and of what is made of a run, or those of recordings.
 
     A law of yours is shown by its name in a mission, as my_laws:my_law, its folder given by --allow-code.
     """
@@ -44,6 +44,8 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         found = _metrics()
     elif what == "formats":
         found = _formats()
+    elif what == "recordings":
+        found = _recordings()
     elif what == "paths":
         found = _paths()
     elif ":" in what:
@@ -92,7 +94,7 @@ def _about(family: str, law: Any) -> str:
 def _laws(family: str) -> list[dict[str, Any]]:
     families = _every_law()
     if family not in families:
-        names = [*families, "missions", "metrics", "paths", "formats"]
+        names = [*families, "missions", "metrics", "paths", "formats", "recordings"]
         hint = nearest(family, names) or "."
         raise click.UsageError(f"There is no family '{family}'{hint} There are {', '.join(names)}")
     return [_describe(law) for law in families[family].values()]
@@ -163,6 +165,12 @@ def _formats() -> list[dict[str, Any]]:
     return paths + [
         {"name": name, "summary": made.holds, "suffixes": list(made.suffixes)} for name, made in VIEWERS.items()
     ]
+
+
+def _recordings() -> list[dict[str, Any]]:
+    from cardume.missions.recordings.reading import MEANINGS
+
+    return [{"name": name, "summary": meaning} for name, meaning in MEANINGS.items()]
 
 
 def _say(entry: Mapping[str, Any]) -> None:

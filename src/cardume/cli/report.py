@@ -121,8 +121,14 @@ def _chosen(given: tuple[str, ...]) -> list[str]:
 
 
 def _write_page(found: "Run", target: Path) -> list[Path]:
+    from cardume.missions.recordings.base import REPLAYED
     from cardume.report.page.page import FILE_NAME, write_page
 
+    if found.text.startswith(REPLAYED):
+        raise InputError(
+            "this is a replay, which has no report of a flight; its figure is figures/replay.svg, and --figure NAME"
+            " draws others: plan, errors, estimation"
+        )
     path = target / FILE_NAME
     write_page(path, found)
     return [path]

@@ -14,6 +14,7 @@ from cardume.units import printable
 MOST_BYTES = 2_000_000_000  # of a recording
 LONGEST = 7 * 86_400.0  # [s] of a recording
 NO_TIMES = np.zeros(0)
+REPLAYED = "# Around the vehicles while a recording"  # how the mission in the log of a replay begins
 
 
 class Stream(NamedTuple):

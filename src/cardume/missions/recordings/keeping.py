@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from cardume.missions.log import write_log
-from cardume.missions.recordings.log import REPLAYED
+from cardume.missions.recordings.base import REPLAYED
 from cardume.missions.recordings.replaying import Part, Replay
 from cardume.missions.results import Destination, write_atomically
 from cardume.missions.summary import FILE_NAME, summarize

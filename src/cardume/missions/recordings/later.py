@@ -38,7 +38,7 @@ def look_back(believed: Believed, position: Choice, start: tuple[float, float], 
     way = np.vstack([np.zeros(2), dt * np.cumsum(np.column_stack([north, east]), axis=0)[:-1]])
     sigma = position.value_or("fix_sigma", 1.0)
     fixes = [(int(row), Fix(*b.fixes[row])) for row in np.flatnonzero(np.isfinite(b.fixes[:, 0]))]
-    places = [(max(0, round(row - fix.age / dt)), fix) for row, fix in fixes if math.isnan(fix[-1])]
+    places = [(max(0, round(row - fix.age / dt)), fix) for row, fix in fixes if math.isnan(fix.level_range)]
     rows = np.unique([*range(0, len(b.times), max(1, round(period / dt))), *(row for row, _ in places)])
     seen = [Seen(int(np.searchsorted(rows, row)), np.array([f.north, f.east]), _noise(f, sigma)) for row, f in places]
     usual = Doubt()

@@ -18,6 +18,7 @@ from cardume.missions.loading import parse_mission
 from cardume.missions.log import Log, read_log
 from cardume.missions.mission import Mission
 from cardume.missions.planning import make_plan
+from cardume.missions.recordings.base import REPLAYED
 from cardume.missions.recordings.meeting import Met
 from cardume.missions.wording import unknown
 from cardume.onboard.mind import OWN, Asked, Whereabouts
@@ -32,7 +33,6 @@ from cardume.units import printable
 
 Progress = Callable[[str, int, int], None]
 STEPS = 100  # ticks between two words about the progress
-REPLAYED = "# Around the vehicles while a recording"  # how the mission in the log of a replay begins
 
 
 def read(path: Path) -> Log:

@@ -152,11 +152,10 @@ def _innovation(b: Believed, row: int, sigma: float) -> tuple[float, float, floa
     apart = np.array([fix.north, fix.east]) - expected[:2]
     if not np.isfinite(noise).all():
         noise = sigma**2 * np.eye(2)
-    level = fix[-1]  # the last field: a range, where it is a number
-    if math.isfinite(level):
+    if math.isfinite(fix.level_range):
         distance = max(float(np.hypot(*apart)), 1e-9)
         line = apart / distance
-        odd, variance = level - distance, float(line @ (spread + noise) @ line)
+        odd, variance = fix.level_range - distance, float(line @ (spread + noise) @ line)
         return abs(odd), odd**2 / variance if variance > LEAST else math.nan, 1.0
     whole = spread + noise
     is_known = np.isfinite(whole).all() and np.linalg.det(whole) > LEAST**2
