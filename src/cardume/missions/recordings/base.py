@@ -198,6 +198,19 @@ def stream_of(rows: Sequence[tuple[float, ...]], width: int) -> Stream:
     return Stream(table[is_last, 0], table[is_last, 1:])
 
 
+def nearest_of(times: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Which of some times is nearest to each of others; (len(wanted),).
+
+    Args:
+        times: (n,) [s] sorted, at least one.
+        wanted: (m,) [s]
+    """
+    after = np.minimum(np.searchsorted(times, wanted), len(times) - 1)
+    before = np.maximum(after - 1, 0)
+    found: np.ndarray = np.where(wanted - times[before] <= times[after] - wanted, before, after)
+    return found
+
+
 def read_lines(path: Path) -> list[str]:
     """The lines of a text, whatever bytes stand in it.
 

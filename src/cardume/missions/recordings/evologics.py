@@ -13,8 +13,11 @@ Source: the fields as in two open parsers, DUNE's Evologics driver and DESERT's 
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
 
 from cardume.errors import DataError
 from cardume.maths.angles import wrap_angle
@@ -24,6 +27,7 @@ from cardume.missions.recordings.base import (
     Recorded,
     Recording,
     Sighted,
+    nearest_of,
     read_lines,
     stream_of,
 )
@@ -156,8 +160,9 @@ def _by_bearing(name: str, remote: Remote, options: Options, notes: list[str]) -
             f"{name}: bearings of USBLANGLES do not fit the positions of USBLLONG beside them; they are left out"
         )
         return []
-    for b in remote.bearings:
-        depth, elevation = _depth_at(remote, b.valid, options), abs(b.elevation)
+    depths = _depths_at(remote, np.array([b.valid for b in remote.bearings]), options)
+    for b, depth in zip(remote.bearings, depths.tolist(), strict=True):
+        elevation = abs(b.elevation)
         if not (depth > 0.0 and elevation > LEAST_ELEVATION):
             without += 1
             continue
@@ -180,25 +185,30 @@ def _by_bearing(name: str, remote: Remote, options: Options, notes: list[str]) -
 
 def _differ(bearings: Sequence[Bearing], fixes: Sequence[Sighted], options: Options) -> bool:
     """Whether bearings point elsewhere than the positions nearest in time."""
-    apart = []
-    for b in bearings:
-        near = min(fixes, key=lambda s: abs(s.valid - b.valid), default=None)
-        if near is not None and abs(near.valid - b.valid) < LATEST:
-            towards = math.atan2(near.east - options.head[1], near.north - options.head[0])
-            apart.append(abs(wrap_angle(b.bearing - towards)))
+    if not bearings or not fixes:
+        return False
+    ordered = sorted(fixes, key=lambda s: s.valid)
+    near = nearest_of(np.array([s.valid for s in ordered]), np.array([b.valid for b in bearings]))
+    apart = [
+        abs(wrap_angle(b.bearing - math.atan2(s.east - options.head[1], s.north - options.head[0])))
+        for b, s in zip(bearings, (ordered[k] for k in near), strict=True)
+        if abs(s.valid - b.valid) < LATEST
+    ]
     return bool(apart) and sum(apart) / len(apart) > FAR_APART
 
 
-def _depth_at(remote: Remote, time: float, options: Options) -> float:
+def _depths_at(remote: Remote, times: np.ndarray, options: Options) -> np.ndarray:
+    """(len(times),) [m] depth of a remote, NaN where it is not known."""
     if math.isfinite(options.depth):
-        return options.depth
-    near = min(remote.depths, key=lambda row: abs(row[0] - time), default=None)
-    return near[1] if near is not None and abs(near[0] - time) < LATEST else math.nan
+        return np.full(len(times), options.depth)
+    depths = stream_of(remote.depths, 1)
+    if not depths.is_there:
+        return np.full(len(times), math.nan)
+    near = nearest_of(depths.times, times)
+    return np.where(np.abs(depths.times[near] - times) < LATEST, depths.values[near, 0], math.nan)
 
 
 def _from(zero: float, vehicle: Recorded) -> Recorded:
     """The same with times from another moment on."""
-    from dataclasses import replace
-
     sighted = tuple(s._replace(heard=s.heard - zero, valid=s.valid - zero) for s in vehicle.sighted)
     return replace(vehicle, sighted=sighted, depth=vehicle.depth._replace(times=vehicle.depth.times - zero))

@@ -7,7 +7,16 @@ import numpy as np
 
 from cardume.errors import InputError
 from cardume.missions.geodesy import GeoPoint, GridPoint, geographic_to_utm, to_local, utm_to_geographic
-from cardume.missions.recordings.base import LeftOut, Options, Recorded, Recording, Sighted, Stream, stream_of
+from cardume.missions.recordings.base import (
+    LeftOut,
+    Options,
+    Recorded,
+    Recording,
+    Sighted,
+    Stream,
+    nearest_of,
+    stream_of,
+)
 from cardume.missions.recordings.psimssb import CARTESIAN, HEAD_UP, RADIANS, Relative
 
 DEGREE = math.pi / 180.0
@@ -88,7 +97,7 @@ def _places(log: ShipLog) -> list[Place]:
     if not places or not log.sigmas:
         return places
     sigmas = np.array(sorted(log.sigmas))
-    nearest = [int(np.argmin(np.abs(sigmas[:, 0] - place.time))) for place in places]
+    nearest = nearest_of(sigmas[:, 0], np.array([place.time for place in places]))
     return [
         place._replace(sigma_north=max(sigmas[k, 1], 1e-3), sigma_east=max(sigmas[k, 2], 1e-3))
         if abs(sigmas[k, 0] - place.time) <= LATE
@@ -128,9 +137,10 @@ def _targets(
     found: dict[str, list[Sighted]] = {}
     depths: dict[str, list[tuple[float, ...]]] = {}
     refused: dict[str, int] = {}
+    deck = Deck(ship, origin, options)
     for heard, relative in log.relatives:
         valid = relative.time - zero
-        place = _place_of(relative, valid, ship, origin, options)
+        place = deck.place_of(relative, valid)
         if isinstance(place, str):
             refused[place] = refused.get(place, 0) + 1
             continue
@@ -152,36 +162,59 @@ def _targets(
     ]
 
 
-def _place_of(
-    relative: Relative, valid: float, ship: Recorded | None, origin: GeoPoint | None, options: Options
-) -> tuple[float, float, float] | str:
-    """North and east [m] of a transponder and the variance [m^2] that the ship's own position adds; or why not."""
-    if relative.coordinates == RADIANS:
-        if origin is None:
-            return "it is in latitude and longitude, and there is no position of the ship to begin the axes at"
-        north, east = to_local(relative.first, relative.second, origin)
-        return float(north), float(east), 0.0
-    if relative.coordinates != CARTESIAN:
-        return _of_grid(relative, origin)
-    heading = 0.0
-    if relative.orientation == HEAD_UP:
-        if ship is None or not ship.attitude.is_there:
-            return "it is head up (H), and there is no heading (HDT)"
-        rows = np.abs(ship.attitude.times - valid)
-        if rows.min() > STALE:
-            return f"the ship's heading is more than {STALE:g} s away"
-        heading = float(ship.attitude.held(np.array([valid]))[0, 0])
-    north, east = relative.turned(heading)
-    if ship is None:
-        return options.head[0] + north, options.head[1] + east, 0.0
-    times = np.array([s.valid for s in ship.sighted])
-    nearest = int(np.argmin(np.abs(times - valid)))
-    if abs(times[nearest] - valid) > STALE:
-        return f"the ship's position is more than {STALE:g} s away"
-    own_north = float(np.interp(valid, times, [s.north for s in ship.sighted]))
-    own_east = float(np.interp(valid, times, [s.east for s in ship.sighted]))
-    own = ship.sighted[nearest]
-    return own_north + north, own_east + east, 0.5 * (own.north_variance + own.east_variance)
+class Deck:
+    """The ship at any time, from which its USBL looks.
+
+    Args:
+        ship: as it was recorded; None: nothing is known of it.
+        origin: of the local axes.
+        options: where the head lies if there is no ship.
+    """
+
+    def __init__(self, ship: Recorded | None, origin: GeoPoint | None, options: Options) -> None:
+        self.origin, self.head = origin, options.head
+        self.attitude = ship.attitude if ship else Stream()
+        own = (
+            sorted((s.valid, s.north, s.east, 0.5 * (s.north_variance + s.east_variance)) for s in ship.sighted)
+            if ship
+            else []
+        )
+        self.track = stream_of(own, 3)
+
+    def place_of(self, relative: Relative, valid: float) -> tuple[float, float, float] | str:
+        """North and east [m] of a transponder and the variance [m^2] that the ship's own place adds; or why not.
+
+        Args:
+            relative: as the ship's USBL sees it.
+            valid: [s] when.
+        """
+        if relative.coordinates == RADIANS:
+            if self.origin is None:
+                return "it is in latitude and longitude, and there is no position of the ship to begin the axes at"
+            north, east = to_local(relative.first, relative.second, self.origin)
+            return float(north), float(east), 0.0
+        if relative.coordinates != CARTESIAN:
+            return _of_grid(relative, self.origin)
+        heading = 0.0
+        if relative.orientation == HEAD_UP:
+            if not self.attitude.is_there:
+                return "it is head up (H), and there is no heading (HDT)"
+            if _is_stale(self.attitude, valid):
+                return f"the ship's heading is more than {STALE:g} s away"
+            heading = float(self.attitude.held(np.array([valid]))[0, 0])
+        north, east = relative.turned(heading)
+        if not self.track.is_there:
+            return self.head[0] + north, self.head[1] + east, 0.0
+        if _is_stale(self.track, valid):
+            return f"the ship's position is more than {STALE:g} s away"
+        own = [float(np.interp(valid, self.track.times, column)) for column in self.track.values.T]
+        return own[0] + north, own[1] + east, own[2]
+
+
+def _is_stale(stream: Stream, time: float) -> bool:
+    """Whether no reading is near a time."""
+    near = nearest_of(stream.times, np.array([time]))[0]
+    return bool(abs(stream.times[near] - time) > STALE)
 
 
 def _of_grid(relative: Relative, origin: GeoPoint | None) -> tuple[float, float, float] | str:
