@@ -153,6 +153,17 @@ def test_what_a_bag_has_is_said(tmp_path: Path) -> None:
             replay(Request(path=path, options=Options(topics=topics)))
 
 
+def test_a_bag_that_is_damaged_further_on_gives_what_was_read(tmp_path: Path) -> None:
+    path = write(tmp_path / "flight.bag", 1)
+    data = bytearray(path.read_bytes())
+    place = data.rindex(b"map", 0, len(data) // 2)  # in a header of the first half
+    data[place - 4 : place] = (2**31 - 1).to_bytes(4, "little")  # its text is longer than the bag
+    path.write_bytes(bytes(data))
+    found = replay(Request(path=path, options=Options(topics=ROLES)))
+    assert any("damaged after" in note for note in found.notes)
+    assert 5 < found.parts[0].score.fixes < 55
+
+
 def test_what_is_no_bag_is_refused(tmp_path: Path) -> None:
     whole = write(tmp_path / "flight.bag", 1).read_bytes()
     draw, path, said = np.random.default_rng(14), tmp_path / "torn.bag", list[str]()
@@ -166,6 +177,7 @@ def test_what_is_no_bag_is_refused(tmp_path: Path) -> None:
             said.append(str(problem))
     assert len(said) > 15
     assert all("torn.bag" in text for text in said)
+    assert any("mended by rosbag reindex" in text for text in said)
     (tmp_path / "empty").mkdir()
     with pytest.raises(DataError, match=r"without log\.nc or metadata\.yaml"):
         replay(Request(path=tmp_path / "empty"))

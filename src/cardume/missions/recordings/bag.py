@@ -65,27 +65,30 @@ def read(path: Path, options: Options) -> Recording:
         InputError: the library is not installed, or no topic is named; then it says which there are.
     """
     try:
-        from rosbags.highlevel import AnyReader, AnyReaderError
+        from rosbags.highlevel import AnyReader
         from rosbags.typesys import Stores, get_typestore
     except ModuleNotFoundError:
         raise InputError("bags are read by rosbags: pip install 'cardume[ros]'") from None
     name = printable(str(path))
+    messages: list[tuple[str, int, Any]] = []
+    notes, roles, kinds = list[str](), dict[str, list[str]](), dict[str, str]()
     try:
         with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
             kinds = {c.topic: c.msgtype.split("/")[-1] for c in reader.connections}
             roles = _roles(options, kinds, name)
-            messages = [
-                (connection.topic, stamp, reader.deserialize(raw, connection.msgtype))
-                for connection, stamp, raw in reader.messages([c for c in reader.connections if c.topic in roles])
-            ]
+            for connection, stamp, raw in reader.messages([c for c in reader.connections if c.topic in roles]):
+                messages.append((connection.topic, stamp, reader.deserialize(raw, connection.msgtype)))
     except InputError:
         raise
-    except (AnyReaderError, OSError, KeyError, ValueError, AssertionError, Exception) as problem:
+    except Exception as problem:  # the library tells a damaged file in many ways
         what = printable(f"{type(problem).__name__}: {problem}")[:160]
-        raise DataError(
-            f"{name} cannot be read as a bag ({what}); give a .bag, an .mcap or the folder of a ROS 2 bag"
-        ) from None
-    return _recording(messages, roles, kinds, name)
+        if not messages:
+            raise DataError(
+                f"{name} cannot be read as a bag ({what}); give a .bag, an .mcap or the folder of a ROS 2 bag. One that"
+                " was cut off is mended by rosbag reindex, ros2 bag reindex or mcap recover"
+            ) from None
+        notes.append(f"the bag is damaged after {len(messages)} messages ({what}); what stands before it was read")
+    return _recording(messages, roles, kinds, name, notes)
 
 
 def _roles(options: Options, kinds: dict[str, str], name: str) -> dict[str, list[str]]:
@@ -119,14 +122,17 @@ def _there(kinds: dict[str, str]) -> str:
 
 
 def _recording(
-    messages: list[tuple[str, int, Any]], roles: dict[str, list[str]], kinds: dict[str, str], name: str
+    messages: list[tuple[str, int, Any]],
+    roles: dict[str, list[str]],
+    kinds: dict[str, str],
+    name: str,
+    notes: list[str],
 ) -> Recording:
     if not messages:
         raise DataError(f"{name} has no message on {', '.join(roles)}")
     stamps = [stamp for _, stamp, _ in messages]
     times = [_stamp(message, stamp) for _, stamp, message in messages]
     apart = sorted(abs(time - stamp) for time, stamp in zip(times, stamps, strict=True))[len(times) // 2] * 1e-9
-    notes = []
     if apart > CLOCKS_APART:
         notes.append(
             f"stamps of headers are {apart:.0f} s from those of the bag: messages are taken to be heard when they were"

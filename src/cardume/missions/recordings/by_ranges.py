@@ -160,10 +160,10 @@ def _hear(bank: RangeFilter, sighted: Sighted, recorded: Recorded, time: float) 
     distance, scale = max(float(np.hypot(*apart)), 0.01), 1.0 + mean[RANGE_SCALE]
     slope = np.zeros(len(mean))
     slope[[NORTH, EAST]], slope[RANGE_SCALE], slope[RANGE_BIAS] = scale * apart / distance, distance, 1.0
-    odd = measured - scale * distance - mean[RANGE_BIAS]
-    square = odd**2 / float(slope @ covariance @ slope + doubt.range**2)
+    error = measured - scale * distance - mean[RANGE_BIAS]
+    square = error**2 / float(slope @ covariance @ slope + doubt.range**2)
     bank.hear(measured, sighted.north, sighted.east)
-    return Innovation(time, abs(float(odd)), square, 1.0, bool(square <= doubt.gate))
+    return Innovation(time, abs(float(error)), square, 1.0, bool(square <= doubt.gate))
 
 
 def _state(bank: RangeFilter | None) -> tuple[float, ...]:

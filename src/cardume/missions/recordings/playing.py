@@ -152,12 +152,14 @@ def _innovation(b: Believed, row: int, sigma: float) -> tuple[float, float, floa
     apart = np.array([fix.north, fix.east]) - expected[:2]
     if not np.isfinite(noise).all():
         noise = sigma**2 * np.eye(2)
+    whole = spread + noise
     if math.isfinite(fix.level_range):
         distance = max(float(np.hypot(*apart)), 1e-9)
         line = apart / distance
-        odd, variance = fix.level_range - distance, float(line @ (spread + noise) @ line)
-        return abs(odd), odd**2 / variance if variance > LEAST else math.nan, 1.0
-    whole = spread + noise
+        across = float(np.nan_to_num(np.array([-line[1], line[0]]) @ spread @ [-line[1], line[0]]))
+        more = 0.5 * across / distance  # a range is longer than that of the mean place, as in belief.py
+        error, variance = fix.level_range - distance - more, float(line @ whole @ line) + 2.0 * more**2
+        return abs(error), error**2 / variance if variance > LEAST else math.nan, 1.0
     is_known = np.isfinite(whole).all() and np.linalg.det(whole) > LEAST**2
     return float(np.hypot(*apart)), float(apart @ np.linalg.solve(whole, apart)) if is_known else math.nan, 2.0
 
