@@ -212,6 +212,22 @@ def test_a_run_whose_values_do_not_fit_is_refused_and_not_the_study() -> None:
     assert set(found["status"].values) == {layout.FLOWN, layout.REFUSED}
 
 
+def test_a_run_that_cannot_be_planned_is_refused_and_not_the_study() -> None:
+    """Within a circle of 20 m a vehicle cannot be 30 m to starboard of it; the first run is such a one."""
+    around = [
+        "path={type: circle, radius: 20 m, centre: {north: 0 m, east: 0 m}}",
+        "vehicles.a.offset.starboard={choose: [0 m, 30 m]}",
+        "duration=8 s",
+    ]
+    mission = read(NOISY, *around)
+    start = next(seed for seed in range(100) if draw(mission, seed).vehicles[0].offset.starboard)
+    found = cardume.study(mission, 10, seed=start)
+    is_outside = found["drawn.vehicles.a.offset.starboard"].values == 0.0
+    assert np.array_equal(found["status"].values, np.where(is_outside, layout.FLOWN, layout.REFUSED))
+    assert 0 < is_outside.sum() < 10
+    assert found["status"][0] == layout.REFUSED
+
+
 def test_a_case_that_does_not_fit_is_refused_and_not_the_study() -> None:
     swept = [override.replace("choose", "sweep") for override in TICKS]
     found = cardume.study(read(NOISY, *swept, SHORT), 3)

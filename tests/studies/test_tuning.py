@@ -285,6 +285,16 @@ def test_seeds_beyond_the_largest_are_refused() -> None:
             tune_noisy(seed=seed)
 
 
+def test_values_that_cannot_be_flown_are_tries_and_no_end() -> None:
+    """Within a circle of 20 m a vehicle cannot be 20 m and more to starboard of it."""
+    around = read(NOISY, "path={type: circle, radius: 20 m, centre: {north: 0 m, east: 0 m}}", "duration=10 s")
+    found = cardume.tune(around, ["vehicles.a.offset.starboard=0..60"], ["energy"], runs=2, evaluations=10)
+    lost = [one for one in found.tries if one.counted == 0.0]
+    assert 0 < len(lost) < 10
+    assert min(one.values[0] for one in lost) >= 19.0
+    assert found.best.counted == 1.0
+
+
 def table_of(numbers: np.ndarray, met: np.ndarray | None = None) -> RunTable:
     """Runs with these numbers of a metric or two."""
     columns, nothing = np.atleast_2d(numbers), np.full(np.shape(numbers)[-1], math.nan)

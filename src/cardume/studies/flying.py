@@ -35,7 +35,7 @@ from cardume.studies.required import Wanted, wanted_of
 from cardume.studies.run_table import Refused, Run, RunTable, stack, tabulate
 from cardume.studies.work import wants_lanes
 
-__all__ = ["Progress", "RunTable", "fly_all", "fly_seeds", "num_processors"]
+__all__ = ["Progress", "RunTable", "able_places", "fly_all", "fly_seeds", "num_processors"]
 
 Progress = Callable[[str, int, int], None]
 Stop = Callable[[], bool]
@@ -161,6 +161,38 @@ def fly_all(
         for mission, some, parts in zip(missions, judged_by, found, strict=True)
     ]
     return [table.first(min(map(len, tables))) for table in tables]
+
+
+def able_places(
+    mission: Mission,
+    seeds: Sequence[int] | np.ndarray,
+    chances: Mapping[str, np.ndarray],
+    count: int,
+    allow_code: Iterable[str | Path] = (),
+) -> list[int]:
+    """The places of the first runs that can be flown: whose drawn values fit one another.
+
+    Args:
+        mission: without sweeps.
+        seeds: (n,) of the runs.
+        chances: of distributions, for each seed.
+        count: how many are wanted; fewer are given where there are not so many.
+        allow_code: folders from which laws may be imported.
+
+    Raises:
+        MissionError: none of them can.
+    """
+    maker = _Maker(mission, catalog(allow_code), is_lenient=True)
+    found: list[int] = []
+    for place, seed in enumerate(seeds):
+        if isinstance(maker.make(int(seed), {key: float(values[place]) for key, values in chances.items()}), _Made):
+            found.append(place)
+            if len(found) == count:
+                break
+    if not found:
+        first = {key: float(values[0]) for key, values in chances.items()}
+        _Maker(mission, catalog(allow_code)).make(int(seeds[0]), first)
+    return found
 
 
 def num_processors() -> int:

@@ -4,15 +4,14 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
-from cardume.errors import InputError, MissionError
-from cardume.missions.drawing import Drawer
+from cardume.errors import InputError
 from cardume.missions.mission import Mission
 from cardume.studies.cases import Cases
-from cardume.studies.flying import Progress, fly_seeds
+from cardume.studies.flying import Progress, able_places, fly_seeds
 from cardume.studies.run_table import RunTable
 from cardume.studies.work import expected_steps, expected_ticks, wants_lanes
 
@@ -115,37 +114,13 @@ class Trial:
             if stage == "compile":
                 self._progress(stage, done, total)
 
-        places = self._fitting(mission, count)
-        seeds = np.array([self._seed(place) for place in places])
-        runs = places % len(self._seeds)
-        chances = {key: values[runs] for key, values in self._chances.items()}
+        # of the study, and beyond its last run with seeds that go on
+        tried = np.arange(max(count, MOST_TRIED))
+        seeds = int(self._seeds[0]) + tried
+        chances = {key: values[tried % len(values)] for key, values in self._chances.items()}
+        able = np.resize(able_places(mission, seeds, chances, count, self._allow_code), count)
         how: dict[str, Any] = {"allow_code": self._allow_code, "threads": 1, "lanes": lanes or None, "progress": note}
-        return fly_seeds(mission, seeds, chances=chances, **how)
-
-    def _seed(self, place: int) -> int:
-        """Of a run of the study; beyond its last, the seeds go on."""
-        return int(self._seeds[0]) + int(place)
-
-    def _fitting(self, mission: Mission, count: int) -> np.ndarray:
-        """(count,) places of runs whose drawn values fit one another, those of few again and again.
-
-        Raises:
-            MissionError: none of the first MOST_TRIED can be drawn.
-        """
-        drawer, found = Drawer(mission), []
-        first: MissionError | None = None
-        for place in range(max(count, MOST_TRIED)):
-            chances = {key: float(values[place % len(values)]) for key, values in self._chances.items()}
-            try:
-                drawer.draw(self._seed(place), chances)
-                found.append(place)
-            except MissionError as problem:
-                first = first or problem
-            if len(found) == count:
-                return np.array(found)
-        if not found:
-            raise cast(MissionError, first)
-        return np.resize(found, count)
+        return fly_seeds(mission, seeds[able], chances={key: v[able] for key, v in chances.items()}, **how)
 
     def _glimpse(self, mission: Mission) -> RunTable:
         """All of a mission that cannot be so short."""

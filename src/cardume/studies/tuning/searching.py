@@ -88,13 +88,13 @@ def search_one(attempt: Attempt, start: Shares, tries: int, goal: Goal, seed: in
         best[:] = [min([*best, (value, place)])]
         return value
 
+    left = iter(range(max(FEWEST_POINTS, int(GLOBAL_SHARE * tries))))
+
     def measure_some(shares: Sequence[float]) -> float:
-        if measure_some.left == 0:  # type: ignore[attr-defined]
+        if next(left, None) is None:
             raise _Elsewhere
-        measure_some.left -= 1  # type: ignore[attr-defined]
         return measure(shares)
 
-    measure_some.left = max(FEWEST_POINTS, int(GLOBAL_SHARE * tries))  # type: ignore[attr-defined]
     count = max(FEWEST_POINTS, min(4 * size + 3, tries // 4))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # that so few points are no whole Sobol sequence

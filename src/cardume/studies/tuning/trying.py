@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from cardume.errors import InputError
+from cardume.errors import InputError, MissionError
 from cardume.missions.mission import Mission
 from cardume.studies.comparing import values_of
 from cardume.studies.constants import LARGEST_SEED
@@ -112,9 +112,10 @@ class Tries:
 
         Raises:
             Enough: the user said stop.
+            MissionError: it cannot be flown.
         """
         values = self.settings.start
-        table = self._fly(values, self.settings.first, max(2, self.settings.runs))
+        table = self._fly(values, self.settings.first, max(2, self.settings.runs), is_lenient=False)
         self.is_random = table.is_varied
         self._keep(self._made_of(values, table.first(self.runs)))
 
@@ -135,7 +136,10 @@ class Tries:
             raise Enough
         found = self.known.get(values)
         if found is None:
-            found = self._made_of(values, self._fly(values, self.settings.first, self.runs))
+            try:
+                found = self._made_of(values, self._fly(values, self.settings.first, self.runs))
+            except MissionError:  # values of the keys that do not fit one another: as bad as any
+                found = Try(values, (math.nan,) * len(self.settings.metrics), 0.0, 0.0)
         self._keep(found)
         self.complain_if_hopeless(HOPELESS)
         return found
@@ -174,7 +178,7 @@ class Tries:
         self.progress("compare", 2 * count, 2 * count)
         return weigh(tables[0], tables[1], asked.mission, asked.metrics, asked.goal, asked.quantile)
 
-    def _fly(self, values: Sequence[float], first: int, count: int) -> RunTable:
+    def _fly(self, values: Sequence[float], first: int, count: int, is_lenient: bool = True) -> RunTable:
         def note(stage: str, done: int, total: int) -> None:
             if stage == "compile":
                 self.progress(stage, done, total)
@@ -187,6 +191,7 @@ class Tries:
             [first + k for k in range(count)],
             allow_code=asked.folders,
             lanes=wants_lanes(expected_ticks(asked.mission) * asked.runs * asked.evaluations) or None,
+            is_lenient=is_lenient,
             progress=note,
             should_stop=self.should_stop,
         )
