@@ -1,10 +1,13 @@
 """Whoever is not the person at this machine is refused: each way in, tried."""
 
 import os
+import queue
 import socket
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 import pytest
 
@@ -242,3 +245,44 @@ def test_pages_beyond_twenty_are_refused(lab: Lab) -> None:
     finally:
         for caller in callers:
             caller.close()
+
+
+def test_a_bug_is_told_without_the_secret(
+    lab: Lab, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def broken(*_given: object) -> str:
+        raise ZeroDivisionError("by zero")
+
+    monkeypatch.setattr("cardume.lab.handlers.library", broken)
+    status, text, _ = get(lab, f"/{lab.guard.token}/plotly.js")
+    assert status == 500
+    assert "ZeroDivisionError" in caplog.text
+    assert lab.guard.token not in caplog.text + text
+
+
+def test_the_browser_is_started_without_the_secret_on_its_command_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import webbrowser
+
+    from cardume.cli.main import main
+
+    opened: "queue.Queue[str]" = queue.Queue()
+    seen = []
+
+    def serve(*_given: object, ready: Callable[[str], None], **_more: object) -> None:
+        ready("http://127.0.0.1:1/secret/")
+        url = opened.get(timeout=30)
+        file = Path(url2pathname(urlsplit(url).path))
+        seen.append((url, file, file.stat().st_mode & 0o777, file.read_text(encoding="utf-8")))
+
+    monkeypatch.setattr(webbrowser, "open", opened.put)
+    monkeypatch.setattr("cardume.lab.server.serve", serve)
+    with pytest.raises(SystemExit) as ended:
+        main(["lab", "--folder", str(tmp_path)])
+    ((url, file, mode, text),) = seen
+    assert ended.value.code == 0
+    assert "secret" not in url
+    assert mode == 0o600
+    assert 'content="0; url=http://127.0.0.1:1/secret/"' in text
+    assert not file.exists()  # it goes with the laboratory

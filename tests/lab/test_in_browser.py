@@ -44,6 +44,17 @@ DRAWN = """
 """
 
 
+SWEPT = """\
+cardume: 1
+name: swept
+duration: 60 s
+guidance: {lookahead: {sweep: [5 m, 9 m]}}
+path: {type: line, length: 200 m}
+formation: {speed: 0.5 m/s}
+vehicles: [{name: alone, model: kinematic, sensors: ideal, start: {cross_track: 4 m}}]
+"""
+
+
 def opened(page: Page, address: str, width: int = 1280, height: int = 800, is_dark: bool = False) -> None:
     scheme = {"name": "prefers-color-scheme", "value": "dark" if is_dark else "light"}
     page.say("Emulation.setEmulatedMedia", features=[scheme])
@@ -54,6 +65,23 @@ def opened(page: Page, address: str, width: int = 1280, height: int = 800, is_da
 def complaints(page: Page) -> list[str]:
     """What the console says, but for advice to plotly.js on how to be faster."""
     return [text for text in page.complaints() if "willReadFrequently" not in text]
+
+
+# Lines that a test can cut, and of which it can make the answers late.
+LINES = """
+    window.lines = [];
+    window.late = 0;
+    window.WebSocket = class extends WebSocket {
+        constructor(address) { super(address); window.lines.push(this); }
+        set onmessage(does) { super.onmessage = (event) => setTimeout(() => does(event), window.late); }
+    };
+"""
+SLOW = """
+    for (const name of ['react', 'animate']) {
+        const draw = Plotly[name];
+        Plotly[name] = (...given) => new Promise((done) => setTimeout(() => done(draw(...given)), 1500));
+    }
+"""
 
 
 def flights(page: Page) -> int:
@@ -216,6 +244,102 @@ def test_a_study_grows_and_stops(page: Page) -> None:
     assert "stopped after" in page.run("return document.getElementById('found').textContent")
     assert page.run("return document.getElementById('begin').disabled") is False
     assert page.run("return document.getElementById('metric').value") == "cross_track_rms"
+
+
+def test_another_mission_ends_the_study_and_clears_what_it_found(page: Page) -> None:
+    page.run("document.getElementById('runs').value = 100000; document.getElementById('begin').click()")
+    page.wait("document.querySelectorAll('#histogram .bars path').length > 2", 300)
+    choose(page, "kinematic/circle")
+    assert page.run("return document.querySelectorAll('#histogram .bars path').length") == 0
+    assert page.run("return document.getElementById('metric').options.length") == 0
+    assert "missions" not in page.run("return document.getElementById('found').textContent")
+    assert page.run("return document.getElementById('begin').disabled") is False
+
+
+def choose(page: Page, name: str) -> None:
+    """Open another mission from the list, until it is drawn."""
+    before = flights(page)
+    page.run(
+        "const select = document.getElementById('mission'); select.value = arguments[0];"
+        "select.dispatchEvent(new Event('change'));",
+        name,
+    )
+    page.wait(f"document.body.dataset.flown > {before}", 300)
+
+
+def test_what_one_should_know_of_a_mission_stays_to_be_read(page: Page, lab: Any) -> None:
+    (lab.folder.root / "old.yaml").write_text(SWEPT, encoding="utf-8")
+    page.go(page.run("return location.href"))
+    choose(page, "old.yaml")
+    move(page, "vehicles.alone.start.cross_track", 0.6)
+    assert "guidance.lookahead is swept" in page.run("return document.getElementById('notes').innerText")
+    choose(page, "kinematic/line")
+    assert page.run("return document.getElementById('notes').hidden")
+
+
+def test_a_line_that_breaks_loses_no_work(page: Page, lab: Any) -> None:
+    script = page.say("Page.addScriptToEvaluateOnNewDocument", source=LINES)["identifier"]
+    try:
+        page.go(page.run("return location.href"))
+        choose(page, "kinematic/line")
+        page.run("document.getElementById('pin').click()")
+        move(page, "vehicles.alone.guidance.lookahead", 0.9)
+        page.run(
+            "const seed = document.getElementById('seed'); seed.value = 77; seed.dispatchEvent(new Event('input'));"
+        )
+        page.wait("cardume.lab.flight.seed === 77")
+        kept, values = page.run(DRAWN), page.run("return cardume.changes()")
+        before = flights(page)
+        page.run("lines.at(-1).close()")
+        page.wait("document.body.dataset.lost === 'gone'")
+        page.wait(f"!document.body.dataset.lost && document.body.dataset.flown > {before}")
+        assert page.run("return document.getElementById('mission').value") == "kinematic/line"
+        assert page.run("return cardume.changes()") == values
+        assert page.run("return cardume.lab.flight.seed") == 77
+        assert page.run(DRAWN) == kept
+        assert page.run("return document.querySelectorAll('.control.changed').length") == 1
+        assert page.run("return document.getElementById('pin').getAttribute('aria-pressed')") == "true"
+    finally:
+        page.say("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+
+
+def test_a_flight_that_was_asked_for_while_another_is_drawn_is_shown(page: Page) -> None:
+    script = page.say("Page.addScriptToEvaluateOnNewDocument", source=LINES)["identifier"]
+    try:
+        page.go(page.run("return location.href"))
+        move(page, "vehicles.surface.acoustics.loss", 0.1)
+        first = page.run(DRAWN)
+        page.run(SLOW)
+        page.run(MOVE, "vehicles.surface.acoustics.loss", 0.4)
+        time.sleep(0.4)  # it is flown, and being drawn
+        page.run("window.late = 2000")
+        page.run(MOVE, "vehicles.surface.acoustics.loss", 0.9)
+        page.wait("cardume.lab.flight && cardume.latencies.length > 2", 60)
+        assert page.run(DRAWN) != first
+    finally:
+        page.say("Page.removeScriptToEvaluateOnNewDocument", identifier=script)
+
+
+def test_what_is_too_large_is_refused_on_the_page(page: Page) -> None:
+    page.run(
+        "const value = document.querySelector('.control .value'); value.value = arguments[0];"
+        "value.dispatchEvent(new Event('change'));",
+        "9" * 1_000_000,
+    )
+    page.wait("document.getElementById('banner').textContent.includes('too large')")
+    assert page.run("return document.body.dataset.lost") is None
+    before = flights(page)
+    page.run("document.getElementById('reset').click()")
+    page.wait(f"document.body.dataset.flown > {before}")
+
+
+def test_the_file_that_the_browser_is_started_with_leads_to_the_page(page: Page, lab: Any) -> None:
+    from cardume.cli.lab import door
+
+    with door(lab.guard.address) as file:
+        page.driver.get(file.as_uri())
+        page.wait("location.protocol === 'http:' && document.body && document.body.dataset.ready === 'yes'", 300)
+    assert page.run("return location.href") == lab.guard.address
 
 
 def test_saving_and_the_report(page: Page, lab: Any) -> None:

@@ -2,16 +2,25 @@
 
 import math
 import os
-from collections.abc import Iterator
+import queue
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 pytest.importorskip("tornado", reason="pip install 'cardume[lab]'")
 
+from cardume.lab.folder import open_folder
 from cardume.lab.handlers import Lab
+from cardume.lab.session import LARGEST_SEED, Session
 from cardume.missions.flying import fly_mission
 from cardume.missions.opening import open_mission
+from cardume.studies.flying import fly_seeds
+from cardume.studies.run_table import FLEET
 from lab.serving import calling, get, serving
 from report.packs import unpacked
 
@@ -142,11 +151,80 @@ def test_a_study_tells_its_numbers_as_they_come_and_stops(lab: Lab) -> None:
             assert len(values) == told["done"] > done
             done = told["done"]
         assert len({value for value in values if value is not None and math.isfinite(value)}) > 10
-        page.say(do="study", runs=100_000, **wind)
-        assert page.hear("study")["done"] < 100
+        page.say(do="study", id=2, runs=100_000, **wind)
+        told = page.hear("study")
+        assert told["done"] < 100
+        assert told["id"] == 2  # by which the page knows portions of the study before
         page.say(do="stop")
         page.say(do="fly", id=9)
         page.hear("flown")  # the page goes on
+
+
+def test_a_study_flies_the_seeds_that_cardume_study_does(lab: Lab) -> None:
+    wind = ["current={type: uniform, speed: {uniform: [0 m/s, 0.2 m/s]}}"]
+    with calling(lab) as page:
+        page.say(do="open", name="kinematic/line")
+        page.hear("flown")
+        page.say(do="study", runs=3, seed=40, values=dict(text.split("=", 1) for text in wind))
+        told = page.hear("study", "refused")
+        page.say(do="study", runs=3, seed=LARGEST_SEED)
+        assert "smaller seed" in page.hear("refused")["problems"][0]["message"]
+    table = fly_seeds(open_mission("kinematic/line", wind), [40, 41, 42])
+    assert told["metrics"]["cross_track_rms"] == list(table.metrics[FLEET + "cross_track_rms"])
+
+
+def flying_studies() -> list[threading.Thread]:
+    return [thread for thread in threading.enumerate() if thread.name == "study"]
+
+
+def ends(condition: Callable[[], bool], seconds: float = 30.0) -> bool:
+    """Whether something comes about in time."""
+    until = time.monotonic() + seconds
+    while not condition() and time.monotonic() < until:
+        time.sleep(0.02)
+    return condition()
+
+
+def test_a_study_ends_with_its_mission(lab: Lab) -> None:
+    with calling(lab) as page:
+        page.say(do="open", name="kinematic/line")
+        page.hear("flown")
+        page.say(do="study", runs=100_000)
+        page.hear("study")
+        assert flying_studies()
+        page.say(do="open", name="no/such/mission")
+        page.hear("refused")
+        assert flying_studies()  # its mission is still there
+        page.say(do="open", name="kinematic/circle")
+        page.hear("opened")
+        assert not flying_studies()
+
+
+def test_a_study_ends_with_its_page_even_if_it_had_not_begun(tmp_path: Path) -> None:
+    told: "queue.Queue[dict[str, Any]]" = queue.Queue()
+    session = Session(open_folder(tmp_path), told.put, "1.2.3")
+    session.ask({"do": "open", "name": "kinematic/line"})
+    session.ask({"do": "study", "runs": 100_000})
+    while told.get(timeout=200)["is"] != "opened":
+        pass
+    session.close()  # while the mission flies: the study still waits for its turn
+    assert ends(lambda: not session.is_working, 200.0)  # its laws may have to be compiled
+    assert ends(lambda: not flying_studies(), 2.0)
+
+
+def test_a_line_that_was_lost_brings_back_what_was_changed(lab: Lab) -> None:
+    changed = {"laws": {"vehicles.alone.guidance.law": "arcsine"}, "values": {"duration": "33 s"}, "seed": 12}
+    with calling(lab) as page:
+        page.say(do="open", name="kinematic/line", again=True, **changed)
+        assert page.hear("opened")["again"] is True
+        told = page.hear("flown", "refused")
+        assert (told["flight"]["seed"], told["seed"]) == (12, 12)
+        assert 30.0 < unpacked(told["flight"]["times"])[-1] <= 33.0
+        keys = [key for group in told["groups"] for control in group["controls"] for key in control["keys"]]
+        assert "vehicles.alone.guidance.gain" in keys
+        page.say(do="open", name="kinematic/line", **changed)  # chosen by hand: as it is in its file
+        assert page.hear("opened")["again"] is False
+        assert page.hear("flown")["flight"]["seed"] != 12
 
 
 def test_two_pages_do_not_disturb_each_other(lab: Lab) -> None:

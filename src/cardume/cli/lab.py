@@ -2,6 +2,8 @@
 
 import json
 import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 import click
@@ -10,6 +12,10 @@ from cardume.cli.options import allow_code_option, json_option, quiet_option
 from cardume.errors import InputError
 
 FIRST = "paper/figure-5"
+DOOR = (
+    '<!DOCTYPE html><meta charset="utf-8"><title>cardume lab</title><meta name="referrer" content="no-referrer">'
+    '<meta http-equiv="refresh" content="0; url={address}"><p><a href="{address}">To the laboratory</a></p>\n'
+)
 
 
 @click.command(short_help="Move sliders, and see the mission flown again.")
@@ -61,6 +67,8 @@ def lab(
         name = _inside(Path(name), chosen.root)
         chosen.file(name)
 
+    doors = ExitStack()
+
     def ready(address: str) -> None:
         if as_json:
             click.echo(json.dumps({"address": address, "folder": str(chosen.root)}))
@@ -70,9 +78,11 @@ def lab(
             click.echo(f"It reads and writes {chosen} only. Ctrl-C ends it.")
         sys.stdout.flush()
         if not no_browser:
-            _open(address)
+            with suppress(OSError):  # no room for its file: the address was printed
+                _open(doors.enter_context(door(address)))
 
-    serve(chosen, name, version(), port=port, allow_code=tuple(allow_code), ready=ready)
+    with doors:
+        serve(chosen, name, version(), port=port, allow_code=tuple(allow_code), ready=ready)
     if is_talkative:
         click.echo("\nThe laboratory has ended.")
     return 0
@@ -85,8 +95,30 @@ def _inside(file: Path, folder: Path) -> str:
         raise InputError(f"{file} lies outside of {folder}; give its folder with --folder, or none") from None
 
 
-def _open(address: str) -> None:
+@contextmanager
+def door(address: str) -> Iterator[Path]:
+    """A file that leads to the laboratory, there while a block runs.
+
+    The browser is started with this file's name: the command lines of a machine are open to all of its users, and the
+    address holds the secret. Nobody but its owner can read the file.
+
+    Args:
+        address: of the laboratory.
+    """
+    import os
+    import tempfile
+
+    handle, name = tempfile.mkstemp(prefix="cardume-lab-", suffix=".html")  # its mode is 0600
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(DOOR.format(address=address))
+        yield Path(name)
+    finally:
+        Path(name).unlink(missing_ok=True)
+
+
+def _open(file: Path) -> None:
     import threading
     import webbrowser
 
-    threading.Thread(target=webbrowser.open, args=(address,), daemon=True).start()
+    threading.Thread(target=webbrowser.open, args=(file.as_uri(),), daemon=True).start()

@@ -3,6 +3,7 @@
 import asyncio
 import html
 import json
+import logging
 import secrets
 from collections.abc import Callable
 from contextlib import suppress
@@ -67,6 +68,11 @@ class Guarded(RequestHandler):
         """
         self.lab.guard.check(self)
         self.set_header("Content-Security-Policy", self.lab.guard.policy(self.request.host))
+
+    def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
+        """A bug is told without the request, whose address holds the token."""
+        if not isinstance(value, HTTPError):
+            logging.getLogger("cardume.lab").error("a bug in cardume", exc_info=(typ, value, tb))
 
     def write_error(self, status_code: int, **_given: Any) -> None:
         """A word for people, and nothing of the inside."""

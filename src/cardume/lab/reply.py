@@ -101,7 +101,7 @@ def required(verdict: Verdict) -> dict[str, Any]:
         "metric": verdict.metric,
         "what": f"{verdict.vehicle}: {name}" if verdict.vehicle else name,
         "wanted": f"{verdict.bound} {verdict.wanted:g} {verdict.unit}".strip(),
-        "limit": _plain(verdict.wanted),
+        "limit": None if verdict.vehicle else _plain(verdict.wanted),  # of the fleet, which a study shows
         "got": f"{verdict.got:.4g} {verdict.unit}".strip() if math.isfinite(verdict.got) else "no value",
         "worst": verdict.worst if verdict.worst and not verdict.vehicle else "",
         "met": verdict.met,

@@ -13,7 +13,7 @@ from cardume.lab.desk import Changes, Desk
 from cardume.lab.folder import Folder, NameTaken
 from cardume.lab.points import waypoints_along
 from cardume.lab.reply import flown, plain_points
-from cardume.lab.study import Study, Tell, metrics_for_page
+from cardume.lab.study import MOST_RUNS, Study, Tell, metrics_for_page
 from cardume.missions import library
 from cardume.missions.runs import Run, run_of
 from cardume.report.page.layout import base_layout
@@ -79,13 +79,18 @@ class Session:
         if wait > 0.0:
             self._thread.join(wait)
 
+    @property
+    def is_working(self) -> bool:
+        """Whether it may still do something: not long after it was closed."""
+        return self._thread.is_alive()
+
     def last_run(self) -> Run | None:
         """What was flown last, with the text of its mission; None before the first flight."""
         return self._last
 
     def _work(self) -> None:
         self._tell(self._hello())
-        while (message := self._asked.get()) is not None:
+        while (message := self._asked.get()) is not None and not self._is_closed.is_set():
             if "number" in message and message["number"] < self._newest:
                 continue  # a newer flight waits
             does = self._does.get(str(message.get("do")))
@@ -124,10 +129,12 @@ class Session:
             opened = self._desk.open_named(_text(message, "name"))
         else:
             opened = self._desk.open_text(_text(message, "name"), _text(message, "text"))
+        self._stop_study(message)  # it is about another mission
         self._shown = ()
         self._last = None
-        self._tell({"is": "opened", "name": opened.name, "notes": list(opened.notes)})
-        self._fly(message | {"laws": {}, "values": {}, "seed": None})
+        is_again = message.get("again") is True  # after a lost line: the page brings what was changed on it
+        self._tell({"is": "opened", "name": opened.name, "notes": list(opened.notes), "again": is_again})
+        self._fly(message if is_again else message | {"laws": {}, "values": {}, "seed": None})
 
     def _fly(self, message: dict[str, Any]) -> None:
         changes = _changes(message)
@@ -170,10 +177,18 @@ class Session:
         self._stop_study(message)
         mission, _ = self._desk.mission(_changes(message))
         runs = message.get("runs")
-        if not isinstance(runs, int) or isinstance(runs, bool) or not 1 <= runs <= 100_000:
-            raise InputError(f"given {runs!r} runs; a study has 1 to 100000")
-        self._study = Study(mission, runs, self._tell, self._desk.allow_code)
+        if not isinstance(runs, int) or isinstance(runs, bool) or not 1 <= runs <= MOST_RUNS:
+            raise InputError(f"given {runs!r} runs; a study has 1 to {MOST_RUNS}")
+        if mission.seed + runs > LARGEST_SEED:
+            raise InputError(f"{runs} runs from seed {mission.seed} on go beyond the largest; give a smaller seed")
+
+        def tell(answer: dict[str, Any]) -> None:
+            self._tell(answer | {"id": message.get("id")})  # a portion may still be under way when the next one begins
+
+        self._study = Study(mission, runs, tell, self._desk.allow_code)
         self._study.start()
+        if self._is_closed.is_set():  # meanwhile, by a page that saw no study to stop
+            self._study.stop()
 
     def _stop_study(self, _message: dict[str, Any]) -> None:
         if self._study is not None:

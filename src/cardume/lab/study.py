@@ -1,4 +1,7 @@
-"""A study in the background: the mission under many seeds, told portion by portion, until it is done or stopped."""
+"""A study in the background: the mission under many seeds, told portion by portion, until it is done or stopped.
+
+Seeds are those that `cardume study` takes: the mission's own and the ones after it.
+"""
 
 import math
 import threading
@@ -26,7 +29,7 @@ class Study:
 
     Args:
         mission: without sweeps.
-        runs: how many seeds, from 1 on.
+        runs: how many seeds, from the mission's own on.
         tell: gets what the page shows, from the thread of the study.
         allow_code: folders from which laws may be imported.
     """
@@ -58,7 +61,7 @@ class Study:
                 count = min(FIRST if done == 0 else LATER, self._runs - done)
                 table = fly_seeds(
                     self._mission,
-                    np.arange(done + 1, done + count + 1),
+                    self._mission.seed + np.arange(done, done + count, dtype=np.int64),
                     allow_code=self._allow_code,
                     threads=max(1, num_processors() - 1),
                     lanes=False,

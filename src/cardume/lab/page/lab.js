@@ -9,13 +9,13 @@ import { showNumbers, showVerdict } from "./tables.js";
 const byId = (id) => document.getElementById(id);
 const PATIENCE = 500; // [ms] after which a newer flight is asked for though the older one is not there
 const LARGEST = 500_000; // bytes of a mission file
+const TOO_LARGE = "What was opened or typed is too large to be flown here; ↺ and Reset all take back what was typed.";
 const LOST = {
   gone: "The connection to the laboratory is lost: it has ended, or is not answering. Type cardume lab again and open the address that it prints. What you changed is still on this page until you close it.",
   other: "Another laboratory answers here now; this page belongs to one that has ended. Open the address that cardume lab printed last.",
-  tooLarge: "The laboratory refused what was sent: it is too large.",
 };
 
-const lab = { mission: null, laws: {}, values: {}, seed: null, points: null, flight: null, pinned: null, pinnedChanges: null, session: "" };
+const lab = { mission: null, text: null, laws: {}, values: {}, seed: null, points: null, flight: null, pinned: null, pinnedChanges: null, session: "" };
 const latencies = [];
 let link = null, controls = null, charts = null, points = null, study = null;
 let asked = null, wanted = null, number = 0, timer = null;
@@ -89,7 +89,7 @@ const landed = async (answer) => {
     document.body.dataset.flown = Number(document.body.dataset.flown ?? 0) + 1;
     document.body.dataset.ready = "yes";
   });
-  if (own) asked = null;
+  if (asked === own) asked = null; // a newer one may have been asked for while this one was drawn
   pump();
 };
 const show = async () => {
@@ -150,20 +150,27 @@ const fillMissions = ({ built_in: builtIn, files }) => {
   if (files.length) parts.unshift(group("in the folder", files.map((name) => option(name))));
   byId("mission").replaceChildren(...parts);
 };
-const open = (name, text = null) => {
+let opening = null; // the text of the mission that is being opened, if the person brought it along
+const open = (name, text = null, more = {}) => {
   [asked, wanted] = [null, null];
+  opening = text;
   byId("status").textContent = "opening …";
-  link.say(text === null ? { do: "open", name } : { do: "open", name, text });
+  link.say({ do: "open", name, ...(text !== null && { text }), ...more });
 };
-const opened = ({ name, notes }) => {
-  Object.assign(lab, { mission: name, laws: {}, values: {}, seed: null, points: null });
-  hidePoints();
+// A new line knows nothing of what was done on the page: the same mission is opened again, with all that was changed.
+const openAgain = () => open(lab.mission, lab.text, { again: true, ...changes() });
+const opened = ({ name, notes, again }) => {
+  if (!again) {
+    Object.assign(lab, { mission: name, text: opening, laws: {}, values: {}, seed: null, points: null });
+    hidePoints();
+    study.forget();
+  }
   const select = byId("mission");
   if (![...select.options].some((option) => option.value === name)) select.prepend(new Option(`${name} (opened)`, name));
   select.value = name;
   byId("name").value = name.split("/").pop().replace(/\.[a-z.]+$/, "").replace(/[^A-Za-z0-9_-]/g, "-");
-  if (notes.length) complain(notes.map((message) => ({ key: "", message })));
-  lab.notes = notes;
+  byId("notes").textContent = notes.join("\n");
+  byId("notes").hidden = notes.length === 0;
   document.title = `${name} – cardume lab`;
 };
 const openFile = async () => {
@@ -239,7 +246,8 @@ const hello = (answer) => {
     byId("plan").on("plotly_afterplot", points.place);
     charts.listen();
   }
-  open(document.body.dataset.mission);
+  if (lab.mission) openAgain();
+  else open(document.body.dataset.mission);
 };
 const told = (answer) => {
   const does = {
@@ -250,7 +258,7 @@ const told = (answer) => {
     refused: () => {
       if (answer.of === "open") byId("mission").value = lab.mission ?? "";
       if (asked && answer.id === asked.id) asked = null;
-      if (answer.of === "study") study.told({ problem: answer.problems.map((one) => one.message).join("\n") });
+      if (answer.of === "study") study.told({ id: answer.id, problem: answer.problems.map((one) => one.message).join("\n") });
       byId("status").textContent = "not flown";
       complain(answer.problems);
       document.body.dataset.refused = Number(document.body.dataset.refused ?? 0) + 1;
@@ -301,4 +309,4 @@ document.addEventListener("keydown", (event) => {
   if (does && lab.flight) { does(); event.preventDefault(); }
 });
 window.cardume = { lab, latencies, changes };
-link = openLink({ told, lost, back });
+link = openLink({ told, lost, back, tooLarge: () => { asked = null; complain([{ key: "", message: TOO_LARGE }]); } });

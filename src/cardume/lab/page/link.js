@@ -1,13 +1,15 @@
 // The line to the laboratory: JSON both ways, and what is known of its end.
-export const openLink = ({ told, lost, back }) => {
+const LARGEST = 900_000; // bytes of a message; more would end the line
+
+export const openLink = ({ told, lost, back, tooLarge }) => {
   let socket = null;
   const address = `ws://${location.host}${location.pathname}line`;
   const connect = () => {
     socket = new WebSocket(address);
     socket.onopen = back;
     socket.onmessage = (event) => told(JSON.parse(event.data));
-    socket.onclose = (event) => {
-      lost(event.code === 1009 ? "tooLarge" : "gone");
+    socket.onclose = () => {
+      lost("gone");
       setTimeout(look, 300);
     };
   };
@@ -23,5 +25,10 @@ export const openLink = ({ told, lost, back }) => {
     setTimeout(look, 2000);
   };
   connect();
-  return { say: (message) => socket.readyState === WebSocket.OPEN && socket.send(JSON.stringify(message)) };
+  const say = (message) => {
+    const text = JSON.stringify(message);
+    if (new Blob([text]).size > LARGEST) tooLarge();
+    else if (socket.readyState === WebSocket.OPEN) socket.send(text);
+  };
+  return { say };
 };

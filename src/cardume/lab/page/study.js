@@ -1,9 +1,10 @@
 // Many missions in the background, as a histogram that grows.
 const byId = (id) => document.getElementById(id);
 const GRAY = "#8C8C8C";
+const ABOUT = "This mission under many seeds, its own and those after it, flown in the background.";
 
 export const makeStudy = ({ say, base, metrics, changes }) => {
-  let values = {}, before = null, done = 0, total = 0, met = null, failed = 0, limits = {}, isOn = false, drawn = 0, timer = null;
+  let values = {}, before = null, done = 0, total = 0, met = null, failed = 0, limits = {}, isOn = false, drawn = 0, timer = null, id = 0;
 
   const bins = (all, count = 30) => {
     let low = Math.min(...all), high = Math.max(...all);
@@ -52,15 +53,29 @@ export const makeStudy = ({ say, base, metrics, changes }) => {
     [values, done, total, met, failed] = [{}, 0, runs, null, 0];
     switched(true);
     tell(`0 of ${runs} missions`);
-    say({ do: "study", runs, ...changes() });
+    say({ do: "study", id: ++id, runs, ...changes() });
+  };
+  const ended = (why) => {
+    if (!isOn) return;
+    switched(false);
+    tell(`${why} after ${done} of ${total} missions`);
   };
   const stop = () => {
     say({ do: "stop" });
+    ended("stopped");
+  };
+  // Another mission is there: what was found is about the one before.
+  const forget = () => {
+    clearTimeout(timer);
+    [values, before, done, total, met, failed, timer] = [{}, null, 0, 0, null, 0, null];
     switched(false);
-    tell(`stopped after ${done} of ${total} missions`);
+    byId("metric").replaceChildren();
+    byId("progress").value = 0;
+    byId("found").textContent = ABOUT;
+    Plotly.purge(byId("histogram"));
   };
   const told = (answer) => {
-    if (!isOn) return;
+    if (!isOn || answer.id !== id) return; // the last portion of a study that was stopped comes late
     if (answer.problem) {
       switched(false);
       byId("found").textContent = answer.problem;
@@ -82,8 +97,10 @@ export const makeStudy = ({ say, base, metrics, changes }) => {
     select.replaceChildren(...useful.map((name) => new Option(name.replaceAll("_", " "), name)));
     select.value = useful.includes(chosen) ? chosen : first;
   };
+  byId("found").textContent = ABOUT;
   byId("begin").addEventListener("click", begin);
   byId("stop").addEventListener("click", stop);
   byId("metric").addEventListener("change", () => { tell(); draw(); });
-  return { told, limits: (required) => { limits = Object.fromEntries(required.map((one) => [one.metric, one.limit])); }, gone: () => switched(false), forget: () => { before = null; } };
+  const setLimits = (required) => { limits = Object.fromEntries(required.filter((one) => one.limit !== null).map((one) => [one.metric, one.limit])); };
+  return { told, limits: setLimits, gone: () => ended("the connection was lost"), forget };
 };
