@@ -14,7 +14,7 @@ SECTIONS = {
     "Begin": ["README", "docs/tutorials/index", "docs/missions", "docs/formats", "docs/report", "docs/lab", "docs/replay"],
     "Laws": ["docs/laws/index"],
     "Extend": ["docs/extending/index"],
-    "Theory": ["docs/theory/errata", "docs/theory/claims"],
+    "Theory": ["docs/theory/errata", "docs/theory/claims", "docs/theory/closed-forms"],
     "Inside": ["ARCHITECTURE", "NOTATION", "docs/api", "docs/decisions/index", "CONTRIBUTING", "CHANGELOG"],
 }
 FIRST = (

@@ -13,6 +13,16 @@ from cardume.studies.store import open_study
 from studies.missions import NOISY
 
 DRAWN = NOISY.replace("speed: 0.1 m/s, towards", "speed: {uniform: [0 m/s, 0.3 m/s]}, towards")
+LAW = """
+from cardume.laws import Meters, Positive, Radians
+from cardume.maths import atan
+from cardume.onboard.guidance import guidance_law
+from cardume.signals import PathError
+
+@guidance_law
+def straight(error: PathError, lookahead: Positive[Meters] = 2.0) -> Radians:
+    return error.path_course - atan(error.cross_track / lookahead)
+"""
 REQUIRED = f"{DRAWN}\nrequire: {{cross_track_rms: 0.5 m}}\n"
 
 
@@ -58,6 +68,30 @@ def test_figures_for_a_paper(study: Path, tmp_path: Path, capsys: pytest.Capture
     assert code == 0
     assert said.count("Written: ") == 2
     assert (tmp_path / "figures" / "worst.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_worst_runs_that_cannot_fly_here_are_told_and_leave_the_other_figures(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A law of the mission's own that is not allowed here, or not there any more."""
+    with_law = REQUIRED.replace("guidance: {law: line_of_sight", "guidance: {law: 'mine:straight'")
+    assert with_law != REQUIRED
+    (tmp_path / "mine.py").write_text(LAW, encoding="utf-8")
+    (tmp_path / "line.yaml").write_text(with_law, encoding="utf-8")
+    allowed, out = ("--allow-code", str(tmp_path)), tmp_path / "out"
+    code, _, complaint = typed(
+        capsys, "study", str(tmp_path / "line.yaml"), "--runs", "8", "-o", str(out), "-q", "--no-figures", *allowed
+    )
+    assert not code, complaint
+    code, _, complaint = typed(capsys, "report", str(out), "--figure", "worst")
+    assert code == 2
+    assert "mine" in complaint
+    assert "--allow-code" in complaint
+    assert typed(capsys, "report", str(out), "--figure", "worst", *allowed)[0] == 0
+    code, said, _ = typed(capsys, "report", str(out), "--figure", "all", "-o", str(tmp_path / "all"))
+    assert code == 0
+    assert "distributions.svg" in said
+    assert "worst.svg" not in said
 
 
 @pytest.mark.parametrize(

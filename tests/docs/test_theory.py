@@ -44,7 +44,7 @@ def test_named_tests_exist(page: Path) -> None:
     assert not missing
 
 
-@pytest.mark.parametrize("name", ["errata.md", "claims.md"])
+@pytest.mark.parametrize("name", ["errata.md", "claims.md", "closed-forms.md"])
 def test_every_row_names_its_test_or_says_why_there_is_none(name: str) -> None:
     found = rows(ROOT / "docs" / "theory" / name)
     assert len(found) > 20
@@ -60,3 +60,18 @@ def test_every_equation_has_a_row_in_the_errata() -> None:
         numbers = [int(n) for n in re.findall(r"\((\d+)\)", first)]
         seen |= set(range(numbers[0], numbers[-1] + 1)) if " to " in first else set(numbers)
     assert seen == set(range(1, 56))
+
+
+def test_closed_forms_that_sources_name_are_in_the_table() -> None:
+    """Nobody is sent to a table that is not here."""
+    known = {row.split("|")[1].strip() for row in rows(ROOT / "docs" / "theory" / "closed-forms.md")}
+    assert len(known) > 35
+    strangers = []
+    for file in (*(ROOT / "src").rglob("*.py"), *(ROOT / "tests").rglob("*.py"), *(ROOT / "docs").rglob("*.md")):
+        text = " ".join(file.read_text(encoding="utf-8").split())
+        named = re.findall(r"\bclosed forms? ([A-Z]{1,2}\d?(?:(?:, | and )[A-Z]{1,2}\d?\b)*)\b", text, re.IGNORECASE)
+        letters = [letter for some in named for letter in re.split(r", | and ", some)]
+        strangers += [(file.name, letter) for letter in letters if letter.isupper() and letter not in known]
+        if file.is_relative_to(ROOT / "src"):
+            strangers += [(file.name, found) for found in re.findall(r"theory (?:page|row)s?\b.{10}", text)]
+    assert not strangers

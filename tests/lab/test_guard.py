@@ -267,7 +267,7 @@ def test_the_browser_is_started_without_the_secret_on_its_command_line(
 
     from cardume.cli.main import main
 
-    opened: "queue.Queue[str]" = queue.Queue()
+    opened: queue.Queue[str] = queue.Queue()
     seen = []
 
     def serve(*_given: object, ready: Callable[[str], None], **_more: object) -> None:

@@ -201,7 +201,7 @@ def test_a_study_ends_with_its_mission(lab: Lab) -> None:
 
 
 def test_a_study_ends_with_its_page_even_if_it_had_not_begun(tmp_path: Path) -> None:
-    told: "queue.Queue[dict[str, Any]]" = queue.Queue()
+    told: queue.Queue[dict[str, Any]] = queue.Queue()
     session = Session(open_folder(tmp_path), told.put, "1.2.3")
     session.ask({"do": "open", "name": "kinematic/line"})
     session.ask({"do": "study", "runs": 100_000})

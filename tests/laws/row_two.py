@@ -1,4 +1,4 @@
-"""The truth of row II of theory.md: a current that wanders, a velocity that shakes, and fixes that get lost."""
+"""The truth of closed form II: a current that wanders, a velocity that shakes, and fixes that get lost."""
 
 from typing import NamedTuple
 

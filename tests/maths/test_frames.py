@@ -83,7 +83,7 @@ def test_a_usbl_fix_with_measured_attitude() -> None:
     offset = np.array([80.0, 230.0, 12.0]) - [100.0, 200.0, 0.0]
     seen = to_spherical(*to_body_3d(*attitude, *offset))
     assert np.array(to_ned_3d(*attitude, *to_cartesian(*seen))) == pytest.approx(offset, **CLOSE)
-    # the error of one degree of heading is range times one degree, across (theory.md, row W)
+    # the error of one degree of heading is range times one degree, across (closed form W)
     wrong = to_ned_3d(*attitude[:2], attitude[2] + np.radians(1.0), *to_cartesian(*seen))
     level = np.hypot(offset[0], offset[1])
     assert np.linalg.norm(np.array(wrong) - offset) == pytest.approx(2.0 * level * np.sin(np.radians(0.5)), rel=1e-9)

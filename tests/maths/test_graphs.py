@@ -1,4 +1,4 @@
-"""Graphs: the spectra of theory.md row M, the null vectors, and who can agree with whom."""
+"""Graphs: the spectra of closed form M, the null vectors, and who can agree with whom."""
 
 import numpy as np
 import pytest

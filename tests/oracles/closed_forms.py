@@ -1,4 +1,4 @@
-"""Closed forms of theory.md, written down anew: root finding and quadrature, nothing of the package."""
+"""What docs/theory/closed-forms.md lists, written down anew: root finding and quadrature, nothing of the package."""
 
 import math
 from collections.abc import Callable, Sequence

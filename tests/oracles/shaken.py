@@ -1,4 +1,4 @@
-"""Flights of row II of theory.md: one vehicle in a current that wanders, with rare fixes that come late or never."""
+"""Flights of closed form II: one vehicle in a current that wanders, with rare fixes that come late or never."""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Row C of theory.md: line of sight along the path (18) settles inside its arc, and needs d / R < pi / 2."""
+"""Closed form C: line of sight along the path (18) settles inside its arc, and needs d / R < pi / 2."""
 
 import math
 

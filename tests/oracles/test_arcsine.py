@@ -1,4 +1,4 @@
-"""Rows B, B2 of theory.md: Maurya's law (4), saturated at 0.99 as we fly it and at 1 as it is printed."""
+"""Closed forms B, B2: Maurya's law (4), saturated at 0.99 as we fly it and at 1 as it is printed."""
 
 import math
 

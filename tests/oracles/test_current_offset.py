@@ -1,4 +1,4 @@
-"""Row D of theory.md: what a current that nothing compensates does, and what (36) as printed makes of it."""
+"""Closed form D: what a current that nothing compensates does, and what (36) as printed makes of it."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Row E of theory.md: a current that nothing compensates makes the error swing once a lap of a circle."""
+"""Closed form E: a current that nothing compensates makes the error swing once a lap of a circle."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Row H of theory.md: the current that heading and speed can beat, and what they must be to do so."""
+"""Closed form H: the current that heading and speed can beat, and what they must be to do so."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Rows S and J5 of theory.md: what rare, lost and late fixes cost the paper's rules; and row X, what consistency is."""
+"""Closed forms S and J5: what rare, lost and late fixes cost the paper's rules; and row X, what consistency is."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Rows F, F2 of theory.md: a heading that lags, and a position that comes late."""
+"""Closed forms F, F2: a heading that lags, and a position that comes late."""
 
 import math
 

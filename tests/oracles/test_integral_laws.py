@@ -1,4 +1,4 @@
-"""Rows AA, BB and DD of theory.md: laws that learn a drift, against closed forms, integrations and MSS's recursions."""
+"""Closed forms AA, BB and DD: laws that learn a drift, against closed forms, integrations and MSS's recursions."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Row C of theory.md, text 2.3: where lines join arcs, law (18) has to change its distance from the path."""
+"""Closed form C, text 2.3: where lines join arcs, law (18) has to change its distance from the path."""
 
 import math
 

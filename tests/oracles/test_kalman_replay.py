@@ -1,4 +1,4 @@
-"""Row II of theory.md, rows V and X, and the algebra of `kalman_replay` against an independent filter."""
+"""Closed form II, rows V and X, and the algebra of `kalman_replay` against an independent filter."""
 
 import math
 from dataclasses import replace

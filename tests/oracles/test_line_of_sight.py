@@ -1,4 +1,4 @@
-"""Rows A, A2, A3 of theory.md: line of sight (3) keeps to its closed forms, on lines and arcs of both senses."""
+"""Closed forms A, A2, A3: line of sight (3) keeps to its closed forms, on lines and arcs of both senses."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Errata (5), (51), (52) of theory.md: how far along its path a vehicle takes itself to be, flown."""
+"""Errata (5), (51), (52): how far along its path a vehicle takes itself to be, flown."""
 
 import math
 

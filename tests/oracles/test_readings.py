@@ -1,4 +1,4 @@
-"""Errata of theory.md, section 1, that stand in no row of closed forms: how equations must be read."""
+"""Errata that stand in no row of closed forms: how equations must be read."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Row K2 of theory.md: observer and crab forgive a wrong speed scale a together, but not every one."""
+"""Closed form K2: observer and crab forgive a wrong speed scale a together, but not every one."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Row V2 of theory.md: what later fixes add, and the smoother against the solution of all equations at once."""
+"""Closed form V2: what later fixes add, and the smoother against the solution of all equations at once."""
 
 import math
 

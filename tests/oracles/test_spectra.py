@@ -1,4 +1,4 @@
-"""Row M of theory.md: the spectra of D^-1 L, read from fleets that fly with small differences."""
+"""Closed form M: the spectra of D^-1 L, read from fleets that fly with small differences."""
 
 import math
 from collections.abc import Callable, Sequence

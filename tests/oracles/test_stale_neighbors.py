@@ -1,4 +1,4 @@
-"""Row O of theory.md: what it costs to take late reports for fresh ones, and how to bring them up to date."""
+"""Closed form O: what it costs to take late reports for fresh ones, and how to bring them up to date."""
 
 import math
 from collections.abc import Callable, Sequence

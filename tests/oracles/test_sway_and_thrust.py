@@ -1,4 +1,4 @@
-"""Rows G and I of theory.md with MEDUSA's hull: drift in a turn, and what a wrong thrust does to a speed."""
+"""Closed forms G and I with MEDUSA's hull: drift in a turn, and what a wrong thrust does to a speed."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Row R of theory.md: how dead reckoning without sway drifts in a turn."""
+"""Closed form R: how dead reckoning without sway drifts in a turn."""
 
 import math
 

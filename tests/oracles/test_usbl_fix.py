@@ -1,4 +1,4 @@
-"""Row W of theory.md: what the angles of a USBL reading become in north and east, seen in what a diver is told."""
+"""Closed form W: what the angles of a USBL reading become in north and east, seen in what a diver is told."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Row Y of theory.md and errata (24)-(31): the virtual target, with Frenet's equations integrated beside it."""
+"""Closed form Y and errata (24)-(31): the virtual target, with Frenet's equations integrated beside it."""
 
 import math
 

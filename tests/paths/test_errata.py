@@ -1,4 +1,4 @@
-"""The paper's equations about the path: as corrected they hold, as printed they give the wrong numbers of theory.md."""
+"""The paper's equations about the path: as corrected they hold, as printed they give the errata's wrong numbers."""
 
 import math
 

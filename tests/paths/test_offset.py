@@ -48,7 +48,7 @@ def test_an_arc_gets_the_radius_r_minus_sigma_times_offset(turn: str, offset: fl
 
 
 def test_row_q_speed_ratio_of_offset_arcs() -> None:
-    """theory.md Q: three meters off a 12 m arc at 0.5 m/s."""
+    """Closed form Q: three meters off a 12 m arc at 0.5 m/s."""
     path = arc(Start(), 12.0, "starboard", 3.0)
     speeds = [0.5 * rows(offset_path(path, d))[0, table.STRETCH] for d in (3.0, -3.0)]
     assert speeds == pytest.approx([0.375, 0.625], abs=1e-12)

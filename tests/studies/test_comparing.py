@@ -32,7 +32,7 @@ def noisy() -> Comparison:
 
 
 def test_the_difference_of_two_laws_in_a_current_is_that_of_theory() -> None:
-    """Without compensation: line of sight d V / sqrt(u^2 - V^2), arcsine V / k1; theory row D."""
+    """Without compensation: line of sight d V / sqrt(u^2 - V^2), arcsine V / k1; closed form D."""
     settled = ["duration=300 s", "transient.threshold=1.5 m", "transient.hold=100 s"]
     arms = {"guidance": [{"law": "line_of_sight", "lookahead": 5}, {"law": "arcsine", "gain": 0.1}]}
     found = cardume.compare(read(LINE), arms, runs=2, overrides=settled, metrics=["cross_track_rms"])

@@ -213,7 +213,7 @@ def test_angles_are_positive_to_starboard_and_down(
 
 
 def test_a_degree_of_azimuth_is_the_range_times_its_sigma_across() -> None:
-    """Theory row W: 0.87266463 m at 50 m; a heading error of the same size turns the fix as far."""
+    """Closed form W: 0.87266463 m at 50 m; a heading error of the same size turns the fix as far."""
     readings = [usbl(Baseline(50.0, 0.0, 0.0), noise, 0.0, 1.0 * DEGREE) for noise in normal_noises(5000, 6)]
     across = np.array([to_cartesian(*reading)[1:] for reading in readings])
     assert across.std(axis=0) == pytest.approx([0.87266463] * 2, rel=4.0 / math.sqrt(10000.0))

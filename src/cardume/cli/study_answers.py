@@ -92,10 +92,11 @@ def report_study(
         The files.
 
     Raises:
-        InputError: no such figure, or one for which the study has nothing to show.
+        InputError: no such figure, or one for which the study has nothing to show, or what it names is not here.
         DataError: the study is damaged.
     """
     from cardume.report import style
+    from cardume.report.study.figures import WORST
     from cardume.report.study.keeping import FIGURES, fly_worst, write_figures
     from cardume.report.study.page.page import FILE_NAME, write_study_page
 
@@ -103,8 +104,10 @@ def report_study(
     if not names:
         write_study_page(target / FILE_NAME, results, fly_worst(results, allow_code=allow_code))
         return [target / FILE_NAME]
-    chosen = _chosen(results, names)
-    return write_figures(target / FIGURES, results, chosen, formats, inches or style.WIDTH, allow_code)
+    chosen, worst = _chosen(results, names), ()
+    if WORST in chosen:
+        worst = fly_worst(results, allow_code=allow_code, is_needed="all" not in names)
+    return write_figures(target / FIGURES, results, chosen, formats, inches or style.WIDTH, worst)
 
 
 def open_results(directory: Path) -> "Results":

@@ -29,7 +29,7 @@ FASTEST = 100.0  # [m/s] for a vehicle without limits
 def check_beaten(scene: Scene) -> list[Finding]:
     """A current across that heading cannot cancel, |Vperp| > u, or against, that leaves no headway.
 
-    Source: theory row H and the domain of eq. (36).
+    Source: closed form H (docs/theory/closed-forms.md) and the domain of eq. (36).
     """
     return worst(ranked for craft in scene.crafts if knows(craft) for ranked in _beaten(scene, craft))
 
@@ -161,7 +161,7 @@ def check_drift(scene: Scene) -> list[Finding]:
 
     Laws with an integral leave none, and one with the current inside none where the current is observed.
 
-    Source: theory row D; the vector field's derived from u sin(chi_d - chi_p) = -V.
+    Source: closed form D (docs/theory/closed-forms.md); the vector field's derived from u sin(chi_d - chi_p) = -V.
     """
     return worst(ranked for craft in scene.crafts if knows(craft) for ranked in _drift(scene, craft))
 

@@ -20,7 +20,7 @@ def check_lag(scene: Scene) -> list[Finding]:
 
     critical at d = 4 u T; of `arcsine` at k1 = 1 / (4 T)
 
-    Source: theory row F2.
+    Source: closed form F2 (docs/theory/closed-forms.md).
     """
     return worst(ranked for craft in scene.crafts for ranked in _late_heading(scene, craft))
 
@@ -46,7 +46,7 @@ def check_delay(scene: Scene) -> list[Finding]:
     `reset` believes a fix to be of now: unstable from u tau / d = pi / 2 on. `direct` besides holds it for T:
     e_(k+1) = e_k - (u / d) ((T - tau) e_k + tau e_(k-1)), without tau unstable from u T / d = 2 on.
 
-    Source: theory row F2, navigation delay; the held one derived.
+    Source: closed form F2 (docs/theory/closed-forms.md), a late position; the held one derived.
     """
     return worst(ranked for craft in scene.crafts for ranked in _late_fixes(scene, craft))
 

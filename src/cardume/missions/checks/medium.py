@@ -23,8 +23,8 @@ def _in_turn(scene: Scene) -> list[Craft]:
 def check_cycle(scene: Scene) -> Iterator[Finding]:
     """How often each vehicle's turn comes, and how old what is known of it is.
 
-    Source: mean age tau + T (1 + p) / (2 (1 - p)) of messages every T that take tau, each lost with p; row S of the
-        theory page.
+    Source: mean age tau + T (1 + p) / (2 (1 - p)) of messages every T that take tau, each lost with p; closed
+        form S (docs/theory/closed-forms.md).
     """
     crafts = _in_turn(scene)
     if len(crafts) < 2:

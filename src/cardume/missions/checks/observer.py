@@ -65,7 +65,8 @@ def obeyed_step(k1: float, k2: float, dt: float) -> np.ndarray:
 def check_euler(scene: Scene) -> list[Finding]:
     """Ticks too long for the gains.
 
-    Source: theory row J4: Ts < k1 / k2 with complex poles, 2 / |s_max| with real ones; with the loop closed, derived.
+    Source: closed form J4 (docs/theory/closed-forms.md): Ts < k1 / k2 with complex poles, 2 / |s_max| with real ones;
+    with the loop closed, derived.
     """
     return worst(ranked for craft in scene.crafts for ranked in _too_coarse(scene, craft))
 
@@ -121,7 +122,8 @@ def gap_map(k1: float, k2: float, gap: float) -> np.ndarray:
     Returns:
         (2, 2) map of (e, w); at the gap where its radius is 1 the observer turns unstable, 2.5 k1 / k2 for k1 T >> 1.
 
-    Source: derived; gives the simulated limits of theory row J5 (10.0, 2.5, 2.2 and 50 s) to their digits.
+    Source: derived; gives the simulated limits of closed form J5 (docs/theory/closed-forms.md), 10.0, 2.5, 2.2 and
+    50 s, to their digits.
     """
     decay = math.exp(-k1 * gap)
     filled = (1.0 - decay) / k1
@@ -165,7 +167,7 @@ def longest_gap(k1: float, k2: float) -> float:
 def check_gaps(scene: Scene) -> list[Finding]:
     """An observer driven by dead reckoning, with gaps between fixes near its limit.
 
-    Source: theory row J5.
+    Source: closed form J5 (docs/theory/closed-forms.md).
     """
     return worst(ranked for craft in scene.crafts for ranked in _too_rare(scene, craft))
 
@@ -224,7 +226,7 @@ def check_scale(scene: Scene) -> list[Finding]:
 
     s^3 + (k1 + L / a) s^2 + (k2 + k1 L) / a s + L k2 / a,  L = V / d
 
-    Source: theory row K2.
+    Source: closed form K2 (docs/theory/closed-forms.md).
     """
     return worst(ranked for craft in scene.crafts for ranked in _mistaken(scene, craft))
 

@@ -100,7 +100,7 @@ def _giver(scene: Scene, craft: Craft) -> str:
 def check_lateness(scene: Scene) -> list[Finding]:
     """Fixes taken for newer than they are: a bias of V tau along the path.
 
-    Source: theory row S, uncompensated delay, and the verdict on the reset rule.
+    Source: closed form S (docs/theory/closed-forms.md), a delay that is not compensated.
     """
     return worst(ranked for craft in scene.crafts for ranked in _lagging(scene, craft))
 

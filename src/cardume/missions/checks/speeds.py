@@ -18,7 +18,7 @@ def check_fastest(scene: Scene) -> list[Finding]:
 
     u = hypot(h (v_L + k) - Vpar, Vperp) over ground, h (v_L + k) through the water; h is the local stretch.
 
-    Source: theory rows H and Q.
+    Source: closed forms H and Q (docs/theory/closed-forms.md).
     """
     return worst(ranked for craft in scene.crafts if knows(craft) for ranked in _too_fast(scene, craft))
 
@@ -94,7 +94,7 @@ def check_slowest(scene: Scene) -> list[Finding]:
 
     u = hypot(h (v_L - k) - Vpar, Vperp) over ground, h (v_L - k) through the water
 
-    Source: theory row H.
+    Source: closed form H (docs/theory/closed-forms.md).
     """
     return worst(ranked for craft in scene.crafts if knows(craft) for ranked in _too_slow(scene, craft))
 

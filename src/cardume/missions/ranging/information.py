@@ -18,7 +18,7 @@ def range_information(bearings: np.ndarray, sigma: float) -> np.ndarray:
     Returns:
         (2, 2) [1/m^2]
 
-    Source: theory row HH; with n uniform bearings the trace of its inverse is 4 sigma^2 / n.
+    Source: closed form HH (docs/theory/closed-forms.md): 4 sigma^2 / n is the trace of its inverse, of n uniform bearings.
     """
     lines = np.stack([np.cos(bearings), np.sin(bearings)])
     return np.asarray(lines @ lines.T / sigma**2)
@@ -38,7 +38,7 @@ def usbl_information(bearing: float, distance: float, range_sigma: float, angle_
     Returns:
         (2, 2) [1/m^2]
 
-    Source: theory row HH.
+    Source: closed form HH (docs/theory/closed-forms.md).
     """
     line = np.array([np.cos(bearing), np.sin(bearing)])
     aside = np.array([-line[1], line[0]])

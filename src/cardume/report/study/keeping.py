@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from cardume.errors import CardumeError
+from cardume.errors import CardumeError, InputError
 from cardume.report.page.page import LibraryMissing
 from cardume.report.study.common import as_results
 from cardume.report.study.figures import STUDY_FIGURES, WORST, save_study_figure, save_study_figures
@@ -22,14 +22,20 @@ def fly_worst(
     number: int = NUMBER,
     allow_code: Iterable[str | Path] = (),
     should_stop: Callable[[], bool] = lambda: False,
+    is_needed: bool = False,
 ) -> Worst:
-    """The worst runs of a study, flown again; none where the study cannot.
+    """The worst runs of a study, flown again.
 
     Args:
         results: of the study.
         number: how many at most.
         allow_code: folders from which the mission's own laws may be imported.
         should_stop: asked before each.
+        is_needed: whether it is an error that none can be flown again; else there are none then.
+
+    Raises:
+        InputError: none can, as the mission names what is not here, or no run was flown.
+        DataError: none can, as the study does not hold its mission.
     """
     found, folders = [], tuple(allow_code)
     for run in worst_runs(results, number):
@@ -37,8 +43,12 @@ def fly_worst(
             break
         try:
             found.append((run, fly_again(results, run.case, run.run, folders)))
-        except CardumeError:  # a law or a file of the mission is not here: the rest of the report does without
+        except CardumeError:  # a law or a file of the mission is not here
+            if is_needed:
+                raise
             return ()
+    if is_needed and not found:
+        raise InputError("no run of this study was flown yet, so none is the worst; cardume study --resume flies them")
     return tuple(found)
 
 
@@ -81,17 +91,17 @@ def write_figures(
     names: Sequence[str],
     formats: Sequence[str],
     width: float,
-    allow_code: Iterable[str | Path] = (),
+    worst: Worst = (),
 ) -> list[Path]:
     """Figures of a study for a paper.
 
     Args:
         target: folder that is made.
         study: `Results`, or its dataset.
-        names: of STUDY_FIGURES, or WORST.
+        names: of STUDY_FIGURES, or WORST, which is left out where no flights are given.
         formats: svg, pdf or png.
         width: [inch] of each figure.
-        allow_code: folders from which the mission's own laws may be imported.
+        worst: from `fly_worst`.
 
     Returns:
         The files.
@@ -99,10 +109,9 @@ def write_figures(
     results, written = as_results(study), []
     target.mkdir(parents=True, exist_ok=True)
     for name in names:
-        if name == WORST:
-            figure = draw_worst(fly_worst(results, allow_code=allow_code), width)
-        else:
-            figure = STUDY_FIGURES[name].draw(results, width)
+        if name == WORST and not worst:
+            continue
+        figure = draw_worst(worst, width) if name == WORST else STUDY_FIGURES[name].draw(results, width)
         for kind in dict.fromkeys(formats):
             written.append(target / f"{name}.{kind}")
             save_study_figure(written[-1], figure)

@@ -40,7 +40,8 @@ def gauss_markov(
     Returns:
         Velocity of the water [m/s] and the next memory.
 
-    Source: derived, the exact solution over a tick (`maths/gauss_markov.py`); theory row T.
+    Source: derived, the exact solution over a tick (`maths/gauss_markov.py`); closed form T
+    (docs/theory/closed-forms.md).
     """
     wandered = vary_axes(memory, noise, dt, (sigma_along, sigma_across), time_constant)
     north, east = to_ned(towards, speed + wandered.north, wandered.east)

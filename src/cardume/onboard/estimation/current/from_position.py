@@ -21,7 +21,7 @@ def from_position(position: NavigationEstimate, motion: Motion) -> Water:
     Returns:
         The current [m/s], NED.
 
-    Source: theory row K: what is needed for e -> 0 is the current that belongs to the speed as measured.
+    Source: closed form K (docs/theory/closed-forms.md): e -> 0 needs the current that belongs to the speed as measured.
     """
     north, east = position.current_north, position.current_east
     return Water(where(north == north, north, 0.0), where(east == east, east, 0.0))

@@ -17,6 +17,6 @@ def reported_speed(report: NeighborReport) -> float:
         Its coordination state now [m].
 
     Source: Rego, Hung & Pascoal's delay compensation with the reported speed instead of v_L
-        (theory page, row O).
+        (closed form O, docs/theory/closed-forms.md).
     """
     return report.state + report.path_speed * report.age

@@ -96,7 +96,8 @@ def kalman_replay(
         The position [m] with its covariance [m^2], the current [m/s] that makes the measured velocity through the water
         that over ground, c + ((1 + s) R(b) - 1) V_m and the sway that was not measured; and the next memory.
 
-    Source: Larsen, Andersen, Ravn & Poulsen (1998), the recalculation that their methods approximate; theory row II.
+    Source: Larsen, Andersen, Ravn & Poulsen (1998), the recalculation that their methods approximate; closed
+    form II (docs/theory/closed-forms.md).
     """
     doubts = Doubts(
         initial_sigma * initial_sigma,
