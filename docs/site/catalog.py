@@ -8,7 +8,7 @@ from equations import as_math
 
 from cardume.cli.list import KEYS
 from cardume.missions.available import every_law
-from cardume.missions.descriptions import describe
+from cardume.missions.descriptions import describe, ends_of
 from cardume.units import show_quantity
 
 
@@ -56,16 +56,11 @@ def _law(told: dict[str, Any]) -> str:
 
 
 def _parameter(parameter: dict[str, Any]) -> str:
-    unit, ends = parameter["unit"], []
     if parameter["words"]:
         words = ", ".join(f"`{word}`" for word in parameter["words"])
         return f"| `{parameter['name']}` | `{parameter['default']}` | {words} | {_plain(parameter['meaning'])} |"
-    if parameter["low"] is not None:
-        ends.append(f"{'above' if parameter['low_open'] else 'at least'} {show_quantity(parameter['low'], unit)}")
-    if parameter["high"] is not None:
-        ends.append(f"{'below' if parameter['high_open'] else 'at most'} {show_quantity(parameter['high'], unit)}")
-    default = show_quantity(parameter["default"], unit)
-    return f"| `{parameter['name']}` | {default} | {', '.join(ends)} | {_plain(parameter['meaning'])} |"
+    default = show_quantity(parameter["default"], parameter["unit"])
+    return f"| `{parameter['name']}` | {default} | {', '.join(ends_of(parameter))} | {_plain(parameter['meaning'])} |"
 
 
 def _plain(text: str) -> str:

@@ -175,7 +175,7 @@ def test_without_the_library_of_the_report_it_says_so_in_a_line(
     stage: Stage, cardume: Cardume, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from cardume.report.page import page
-    from cardume.report.page.page import LibraryMissing
+    from cardume.report.page.frame import LibraryMissing
 
     def missing() -> str:
         raise LibraryMissing("report.html needs plotly: pip install 'cardume[report]'")

@@ -167,6 +167,9 @@ def test_a_study_flies_the_seeds_that_cardume_study_does(lab: Lab) -> None:
         page.hear("flown")
         page.say(do="study", runs=3, seed=40, values=dict(text.split("=", 1) for text in wind))
         told = page.hear("study", "refused")
+        assert told["met"] is None  # nothing is required of it
+        page.say(do="study", runs=4, values={"require": "{cross_track_rms: 100 m}"})
+        assert page.hear("study", "refused")["met"] == "100 % (51 to 100 %)"
         page.say(do="study", runs=3, seed=LARGEST_SEED)
         assert "smaller seed" in page.hear("refused")["problems"][0]["message"]
     table = fly_seeds(open_mission("kinematic/line", wind), [40, 41, 42])

@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from cardume.report.message_lanes import links
-from cardume.report.page import page as pages
-from cardume.report.page.page import LibraryMissing, make_page, write_page
+from cardume.report.page import frame as pages
+from cardume.report.page.frame import LibraryMissing
+from cardume.report.page.page import make_page, write_page
 from cardume.report.page.series import series_view
 from cardume.report.page.store import MOST_CELLS, Store, packed
 from cardume.simulation.flight import CERTAINTY, CHANNELS, MESSAGE_COLUMNS, Flight

@@ -53,7 +53,7 @@ def lab(
     from cardume.lab.folder import open_folder
     from cardume.missions import library
     from cardume.missions.opening import nothing_there
-    from cardume.report.page.page import library as plotly
+    from cardume.report.page.frame import library as plotly
 
     is_talkative = not quiet and not as_json
     plotly()  # what draws is there, or it is said now

@@ -197,14 +197,11 @@ def _say(entry: Mapping[str, Any]) -> None:
 
 
 def _one_line(parameter: Mapping[str, Any]) -> str:
-    unit, ends = parameter["unit"], []
+    from cardume.missions.descriptions import ends_of
+
     if words := parameter["words"]:
         return f"{parameter['name']:<20} {parameter['default']:<12} of {', '.join(words)}"
-    if parameter["low"] is not None:
-        ends.append(f"{'above' if parameter['low_open'] else 'at least'} {show_quantity(parameter['low'], unit)}")
-    if parameter["high"] is not None:
-        ends.append(f"{'below' if parameter['high_open'] else 'at most'} {show_quantity(parameter['high'], unit)}")
-    default = show_quantity(parameter["default"], unit)
+    default, ends = show_quantity(parameter["default"], parameter["unit"]), ends_of(parameter)
     return f"{parameter['name']:<20} {default:<12} {' and '.join(ends)}".rstrip()
 
 

@@ -122,7 +122,8 @@ def _chosen(given: tuple[str, ...]) -> list[str]:
 
 def _write_page(found: "Run", target: Path) -> list[Path]:
     from cardume.missions.recordings.base import REPLAYED
-    from cardume.report.page.page import FILE_NAME, write_page
+    from cardume.report.page.frame import FILE_NAME
+    from cardume.report.page.page import write_page
 
     if found.text.startswith(REPLAYED):
         raise InputError(

@@ -111,7 +111,8 @@ class Drawing:
             return  # whoever pressed Ctrl-C does not want to wait for pictures
         from cardume.missions.runs import run_of
         from cardume.report.figures import save_figures
-        from cardume.report.page.page import FILE_NAME, LibraryMissing, write_page
+        from cardume.report.page.frame import FILE_NAME, LibraryMissing
+        from cardume.report.page.page import write_page
 
         try:
             save_figures(self.flight, folder / "figures")

@@ -96,17 +96,17 @@ def report_study(
         DataError: the study is damaged.
     """
     from cardume.report import style
+    from cardume.report.page.frame import FILE_NAME
     from cardume.report.study.figures import WORST
     from cardume.report.study.keeping import FIGURES, fly_worst, write_figures
-    from cardume.report.study.page.page import FILE_NAME, write_study_page
+    from cardume.report.study.page.page import write_study_page
 
     results = open_results(directory)
     if not names:
         write_study_page(target / FILE_NAME, results, fly_worst(results, allow_code=allow_code))
         return [target / FILE_NAME]
-    chosen, worst = _chosen(results, names), ()
-    if WORST in chosen:
-        worst = fly_worst(results, allow_code=allow_code, is_needed="all" not in names)
+    chosen = _chosen(results, names)
+    worst = fly_worst(results, allow_code=allow_code, is_needed="all" not in names) if WORST in chosen else ()
     return write_figures(target / FIGURES, results, chosen, formats, inches or style.WIDTH, worst)
 
 

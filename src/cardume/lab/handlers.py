@@ -18,7 +18,8 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 from cardume.lab.folder import Folder
 from cardume.lab.guard import HEADERS, Guard
 from cardume.lab.session import Session
-from cardume.report.page.page import library, make_page
+from cardume.report.page.frame import library
+from cardume.report.page.page import make_page
 
 PARTS = {
     "": ("lab.html", "text/html; charset=utf-8"),

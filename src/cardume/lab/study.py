@@ -13,10 +13,14 @@ import numpy as np
 
 from cardume.errors import CardumeError
 from cardume.missions.mission import Mission
+from cardume.report.study.blocks import chance_interval
+from cardume.report.study.common import percent
 from cardume.simulation.flight import METRICS
+from cardume.studies.answers.requirements import Chance
 from cardume.studies.constants import FLEET
 from cardume.studies.flying import fly_seeds, num_processors
 from cardume.studies.run_table import RunTable
+from cardume.studies.statistics import share_interval
 
 FIRST, LATER = 4, 12  # missions in a portion: the first numbers come soon
 MOST_RUNS = 100_000
@@ -37,6 +41,7 @@ class Study:
     def __init__(self, mission: Mission, runs: int, tell: Tell, allow_code: Iterable[Path] = ()) -> None:
         self._mission, self._runs, self._tell = mission, min(max(1, runs), MOST_RUNS), tell
         self._allow_code = tuple(allow_code)
+        self._met = self._failed = 0  # missions so far
         self._is_stopped = threading.Event()
         self._thread = threading.Thread(target=self._fly, name="study", daemon=True)
 
@@ -82,7 +87,9 @@ class Study:
 
     def _portion(self, table: RunTable, done: int) -> dict[str, Any]:
         failed = np.array([bool(text) for text in table.failure])
-        met = table.met.all(axis=1) & ~failed if table.requirements else None
+        self._failed += int(failed.sum())
+        self._met += int((table.met.all(axis=1) & ~failed).sum())
+        chance = Chance(self._met, done, *share_interval(self._met, done))
         return {
             "is": "study",
             "done": done,
@@ -92,8 +99,8 @@ class Study:
                 for name, values in table.metrics.items()
                 if name.startswith(FLEET)
             },
-            "met": None if met is None else int(met.sum()),
-            "failed": int(failed.sum()),
+            "met": f"{percent(chance.share)} ({chance_interval(chance)})" if table.requirements else None,
+            "failed": self._failed,
         }
 
 

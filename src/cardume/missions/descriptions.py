@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from cardume.parameters import Once, note_in
+from cardume.units import show_quantity
 
 SECTIONS = "Args|Returns|Raises|Source"
 OF_ALL_SENSORS = {"period": "between readings", "latency": "from the measurement until it is there"}
@@ -31,6 +32,20 @@ def describe(law: Any) -> dict[str, Any]:
         "parameters": [_parameter(parameter, said) for parameter in law.parameters],
         "source": " ".join(source[1].split()) if source else "",
     }
+
+
+def ends_of(parameter: Mapping[str, Any]) -> list[str]:
+    """The bounds of a parameter in words, as "above 0 m" and "at most 5 m"; none where it has none.
+
+    Args:
+        parameter: one of those that `describe` gives.
+    """
+    unit, ends = parameter["unit"], []
+    if parameter["low"] is not None:
+        ends.append(f"{'above' if parameter['low_open'] else 'at least'} {show_quantity(parameter['low'], unit)}")
+    if parameter["high"] is not None:
+        ends.append(f"{'below' if parameter['high_open'] else 'at most'} {show_quantity(parameter['high'], unit)}")
+    return ends
 
 
 def _meanings_of_parts(law: Any) -> dict[str, str]:

@@ -68,7 +68,7 @@ def run_along(
         motion: that it believes to have.
         memory: the target's place on the path.
         dt: [s] tick.
-        target_gain: [1/s] k2.
+        target_gain: [1/s] k2, how fast the target comes back to abeam.
         through_water: [-] 1: by heading and speed through the water; 0: over ground.
 
     Returns:
@@ -129,7 +129,7 @@ def virtual_target(
         motion: velocity that it believes to have, [m/s], and its heading [rad].
         memory: the target's place on the path.
         dt: [s] tick.
-        target_gain: [1/s] k2 > 0.
+        target_gain: [1/s] k2 > 0, how fast the target comes back to abeam.
         through_water: [-] 1: u cos(psi - chi_p) in the place of U cos(chi - chi_p), as (27) was meant without a
             current and without sway; 0: over ground.
 

@@ -73,8 +73,8 @@ def kinematic(
             stops a climb.
         water: current [m/s], held over the step.
         dt: [s] plant step.
-        heading_time_constant: [s] T >= 0.
-        speed_time_constant: [s] T_u >= 0.
+        heading_time_constant: [s] T >= 0, lag of the heading behind its command.
+        speed_time_constant: [s] T_u >= 0, lag of the speed behind its command.
         yaw_rate_max: [rad/s] how fast it can turn; a step is turned evenly where that limits it.
 
     Returns:

@@ -148,24 +148,24 @@ def medusa_plant(
 
     Args:
         dt: [s] plant step, at least motor_delay / 63.
-        mass: [kg] m.
-        yaw_inertia: [kg m^2] I_zz.
-        surge_added_mass: [kg] -X_udot.
-        sway_added_mass: [kg] -Y_vdot.
-        heave_added_mass: [kg] -Z_wdot.
-        yaw_added_inertia: [kg m^2] -N_rdot.
-        surge_drag: [N s/m] -X_u.
-        sway_drag: [N s/m] -Y_v.
-        heave_drag: [N s/m] -Z_w.
-        yaw_drag: [N m s] -N_r.
-        surge_drag_quadratic: [N s^2/m^2] -X_|u|u.
-        sway_drag_quadratic: [N s^2/m^2] -Y_|v|v.
-        heave_drag_quadratic: [N s^2/m^2] -Z_|w|w.
-        yaw_drag_quadratic: [N m s^2] -N_|r|r.
+        mass: [kg] m, of the body.
+        yaw_inertia: [kg m^2] I_zz, of the body about the vertical.
+        surge_added_mass: [kg] -X_udot, of the water that goes along.
+        sway_added_mass: [kg] -Y_vdot, of the water that goes along.
+        heave_added_mass: [kg] -Z_wdot, of the water that goes along.
+        yaw_added_inertia: [kg m^2] -N_rdot, of the water that turns along.
+        surge_drag: [N s/m] -X_u, linear drag ahead.
+        sway_drag: [N s/m] -Y_v, linear drag sideways.
+        heave_drag: [N s/m] -Z_w, linear drag down and up.
+        yaw_drag: [N m s] -N_r, linear drag of turning.
+        surge_drag_quadratic: [N s^2/m^2] -X_|u|u, drag ahead that grows with the square.
+        sway_drag_quadratic: [N s^2/m^2] -Y_|v|v, drag sideways that grows with the square.
+        heave_drag_quadratic: [N s^2/m^2] -Z_|w|w, drag down and up that grows with the square.
+        yaw_drag_quadratic: [N m s^2] -N_|r|r, drag of turning that grows with the square.
         thrust_coefficient: [N s^2/rad^2] c of each thruster.
-        max_shaft_speed: [rad/s] either way.
+        max_shaft_speed: [rad/s] largest of a shaft, either way.
         dead_zone: [-] of max_shaft_speed; a smaller command does not turn the shaft.
-        motor_pole: [1/s] p.
+        motor_pole: [1/s] p, how fast a shaft follows its command.
         motor_delay: [s] of every command.
         thruster_arm: [m] of each horizontal thruster from the centre line.
     """

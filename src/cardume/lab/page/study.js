@@ -36,10 +36,11 @@ export const makeStudy = ({ say, base, metrics, changes }) => {
   const tell = (text) => {
     byId("progress").value = total ? done / total : 0;
     const parts = [text || `${done} of ${total} missions`];
-    if (met !== null && done) parts.push(`${((100 * met) / done).toFixed(0)} % met all that is required`);
+    if (met !== null && done) parts.push(`in ${met} all that is required was met`);
     if (failed) parts.push(`${failed} failed while flying`);
     const known = (values[byId("metric").value] ?? []).filter((value) => value !== null).sort((a, b) => a - b);
-    if (known.length) parts.push(`median ${known[Math.floor(known.length / 2)].toPrecision(3)}`);
+    const { unit } = metrics[byId("metric").value] ?? { unit: "" };
+    if (known.length) parts.push(`median ${[known[Math.floor(known.length / 2)].toPrecision(3), unit].join(" ").trim()}`);
     byId("found").textContent = `${parts.join("; ")}.`;
   };
   const switched = (isFlying) => {
@@ -82,8 +83,7 @@ export const makeStudy = ({ say, base, metrics, changes }) => {
       return;
     }
     for (const [name, more] of Object.entries(answer.metrics)) (values[name] ??= []).push(...more);
-    [done, total, failed] = [answer.done, answer.total, failed + answer.failed];
-    met = answer.met === null ? null : (met ?? 0) + answer.met;
+    [done, total, failed, met] = [answer.done, answer.total, answer.failed, answer.met];
     if (done >= total) switched(false);
     offer(Object.keys(values));
     tell();

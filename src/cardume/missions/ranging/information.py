@@ -18,7 +18,7 @@ def range_information(bearings: np.ndarray, sigma: float) -> np.ndarray:
     Returns:
         (2, 2) [1/m^2]
 
-    Source: closed form HH (docs/theory/closed-forms.md): 4 sigma^2 / n is the trace of its inverse, of n uniform bearings.
+    Source: closed form HH (docs/theory/closed-forms.md): with n uniform bearings its inverse has trace 4 sigma^2 / n.
     """
     lines = np.stack([np.cos(bearings), np.sin(bearings)])
     return np.asarray(lines @ lines.T / sigma**2)

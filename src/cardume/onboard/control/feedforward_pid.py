@@ -102,29 +102,29 @@ def pilot_of(
         sway_share: [-] of the Munk moment that the estimate of sway cancels.
         turn_bandwidth: [1/s] of the filter that finds z.
         heading_jump: [rad] a larger change of the reference says nothing about turning.
-        speed_bandwidth: [1/s] b.
+        speed_bandwidth: [1/s] b, how fast the speed model follows the reference.
         acceleration_max: [m/s^2] of the speed model.
         speed_integral_gain: [N/m] of s, against drag that is not as believed.
-        depth_gain: [1/s] k.
-        heave_max: [m/s] of w_d.
-        heave_gain: [N s/m] kw.
+        depth_gain: [1/s] k, heave asked for, over the error of depth.
+        heave_max: [m/s] largest heave w_d that is asked for, either way.
+        heave_gain: [N s/m] kw, force over the error of heave.
         depth_integral_gain: [N/(m s)] of s, against a vehicle that is not trimmed.
         heave_bandwidth: [1/s] of the observer of heave.
-        thrust_max: [N] either way.
-        yaw_moment_max: [N m] either way.
-        heave_force_max: [N] either way.
+        thrust_max: [N] largest that is commanded, either way.
+        yaw_moment_max: [N m] largest that is commanded, either way.
+        heave_force_max: [N] largest that is commanded, either way.
         thruster_lag: [s] delay and lag together, for the observer of heave.
         surge_mass: [kg] m_u, with added mass, as the autopilot believes it; so with all that follow.
-        sway_mass: [kg] m_v.
-        heave_mass: [kg] m_w.
-        surge_drag: [N s/m] d in surge.
-        surge_drag_quadratic: [N s^2/m^2] D in surge.
-        sway_drag: [N s/m] Y.
-        sway_drag_quadratic: [N s^2/m^2] D in sway.
-        heave_drag: [N s/m] d in heave.
-        heave_drag_quadratic: [N s^2/m^2] D in heave.
-        yaw_drag: [N m s] N_r.
-        yaw_drag_quadratic: [N m s^2] D in yaw.
+        sway_mass: [kg] m_v, with added mass in sway.
+        heave_mass: [kg] m_w, with added mass in heave.
+        surge_drag: [N s/m] d in surge, linear.
+        surge_drag_quadratic: [N s^2/m^2] D in surge, quadratic.
+        sway_drag: [N s/m] Y, linear in sway.
+        sway_drag_quadratic: [N s^2/m^2] D in sway, quadratic.
+        heave_drag: [N s/m] d in heave, linear.
+        heave_drag_quadratic: [N s^2/m^2] D in heave, quadratic.
+        yaw_drag: [N m s] N_r, linear in yaw.
+        yaw_drag_quadratic: [N m s^2] D in yaw, quadratic.
     """
     return Pilot(
         HeadingGains(

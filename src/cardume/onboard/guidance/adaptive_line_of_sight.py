@@ -40,9 +40,9 @@ def adaptive_line_of_sight(
         error: path error; e = cross_track > 0 to starboard, chi_p = path_course.
         memory: b [rad].
         dt: [s] tick.
-        lookahead: [m] d > 0.
+        lookahead: [m] d > 0, how far ahead on the tangent it looks.
         adaptation_gain: [1/(m s)] g; 0 gives plain line of sight.
-        crab_max: [rad] M.
+        crab_max: [rad] M, the largest crab angle that is learnt, either way.
 
     Returns:
         Desired course [rad], NED, and the next memory.

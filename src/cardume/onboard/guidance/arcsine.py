@@ -21,7 +21,7 @@ def arcsine(error: PathError, gain: Positive[PerSecond] = 0.1) -> Radians:
 
     Args:
         error: path error; e = cross_track > 0 to starboard, u = speed through the water.
-        gain: [1/s] k1 > 0.
+        gain: [1/s] k1 > 0, how fast the error falls near the path.
 
     Returns:
         Desired course [rad], NED.

@@ -36,7 +36,7 @@ def arcsine_integral(
         error: path error; e = cross_track > 0 to starboard, u = speed through the water.
         memory: z [m s].
         dt: [s] tick.
-        gain: [1/s] k1 > 0.
+        gain: [1/s] k1 > 0, speed across the path over the error.
         integral_gain: [1/s^2] k2; 0 gives `arcsine`.
         anti_windup: [m] ka; 0 lets it wind up.
 

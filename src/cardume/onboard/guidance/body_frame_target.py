@@ -66,16 +66,16 @@ def body_frame_target(
         memory: s [m] and s' [m/s].
         dt: [s] tick.
         arm: [m] b > 0; the yaw rate asked for goes with 1 / b.
-        gain_ahead: [1/s] K ahead.
-        gain_starboard: [1/s] K to starboard.
-        correction_max: [m/s] a.
-        target_damping: [1/s] kz > 0.
+        gain_ahead: [1/s] K of the error ahead: how fast it is closed.
+        gain_starboard: [1/s] K of the error to starboard: how fast it is closed.
+        correction_max: [m/s] a, the most that an error adds to the velocity.
+        target_damping: [1/s] kz > 0, how fast the target takes up its speed.
         target_pull: [1/s^2] ke; 0: the target does not wait.
-        target_acceleration_max: [m/s^2] of sat.
+        target_acceleration_max: [m/s^2] limit of sat, of the target along the path.
         target_speed_min: [m/s] <= 0: how fast the target may run back to the vehicle.
         target_speed_max: [m/s] how fast it may run ahead.
         speed_max: [m/s] the speed asked for is between 0 and that.
-        yaw_rate_max: [rad/s] either way.
+        yaw_rate_max: [rad/s] largest that is asked for, either way.
 
     Returns:
         Yaw rate [rad/s] and speed through the water [m/s], and the next memory.

@@ -35,7 +35,7 @@ def integral_line_of_sight(
         error: path error; e = cross_track > 0 to starboard, chi_p = path_course.
         memory: z [s].
         dt: [s] tick.
-        lookahead: [m] d > 0.
+        lookahead: [m] d > 0, how far ahead on the tangent it looks.
         integral_gain: [m/s] k; 0 gives plain line of sight.
 
     Returns:

@@ -17,7 +17,7 @@ def line_of_sight(error: PathError, lookahead: Positive[Meters] = 5.0) -> Radian
 
     Args:
         error: path error; e = cross_track > 0 to starboard, chi_p = path_course.
-        lookahead: [m] d > 0.
+        lookahead: [m] d > 0, how far ahead on the tangent it looks.
 
     Returns:
         Desired course [rad], NED.

@@ -40,11 +40,11 @@ def path_frame_backstepping(
     Args:
         error: path error; e = cross_track > 0 to starboard, s1 = along_track, c = curvature.
         motion: believed heading [rad], velocity through the water and current [m/s].
-        course_gain: [1/s] k1 > 0.
-        error_gain: [1/m^2] k2.
+        course_gain: [1/s] k1 > 0, how fast the error of course falls.
+        error_gain: [1/m^2] k2 of the cross-track error, in the rate of turn.
         approach: [rad] theta, the angle to the path far away from it.
-        steepness: [1/m] k > 0.
-        yaw_rate_max: [rad/s] of sat.
+        steepness: [1/m] k > 0, how near the path the approach bends.
+        yaw_rate_max: [rad/s] limit of sat, either way.
 
     Returns:
         Yaw rate [rad/s], and chi_p + delta [rad], which the course is to become.

@@ -46,11 +46,11 @@ def trajectory_tracking(
         memory: s [m].
         dt: [s] tick.
         arm: [m] b > 0; the yaw rate asked for goes with 1 / b.
-        gain_ahead: [1/s] K ahead.
-        gain_starboard: [1/s] K to starboard.
-        correction_max: [m/s] a.
+        gain_ahead: [1/s] K of the error ahead: how fast it is closed.
+        gain_starboard: [1/s] K of the error to starboard: how fast it is closed.
+        correction_max: [m/s] a, the most that an error adds to the velocity.
         speed_max: [m/s] the speed asked for is between 0 and that.
-        yaw_rate_max: [rad/s] either way.
+        yaw_rate_max: [rad/s] largest that is asked for, either way.
 
     Returns:
         Yaw rate [rad/s] and speed through the water [m/s], and the next memory.

@@ -31,11 +31,11 @@ def event_triggered(
         outbox: time, time since the last sending, and place.
         forecast: gamma - gamma_hat.
         dt: [s] tick.
-        trigger_floor: [m] c0.
-        trigger_margin: [m] c1.
-        trigger_decay: [1/s] alpha.
+        trigger_floor: [m] c0, the error of prediction that is always borne.
+        trigger_margin: [m] c1, what is borne beside it at the start of the mission.
+        trigger_decay: [1/s] alpha, how fast that margin shrinks.
         dwell: [s] least time between two messages.
-        heartbeat: [s] most.
+        heartbeat: [s] most time between two messages.
 
     Returns:
         1 to send, else 0.

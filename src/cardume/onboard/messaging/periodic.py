@@ -18,7 +18,7 @@ def periodic(outbox: Outbox, dt: Seconds, period: Positive[Seconds] = 1.0, offse
     Args:
         outbox: time since the last sending [s].
         dt: [s] tick.
-        period: [s] between messages.
+        period: [s] from one message to the next.
         offset: [s] of the first one.
 
     Returns:

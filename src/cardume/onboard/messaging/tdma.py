@@ -27,7 +27,7 @@ def tdma(
         dt: [s] tick.
         slot: [s] 0: what modem, message, range and guard need.
         range: [m] up to which a message is to have passed before the next slot.
-        guard: [s] between slots.
+        guard: [s] silence at the end of each slot, for clocks and echoes.
 
     Returns:
         1 to send, else 0.

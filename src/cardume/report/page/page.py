@@ -1,23 +1,18 @@
 """The page as one file: words and tables first, then the charts, their numbers and the library that draws them."""
 
-import base64
-import hashlib
 import html
-import json
-import re
 from collections.abc import Mapping
-from importlib import resources
 from pathlib import Path
 from string import Template
 from typing import Any
 
 import numpy as np
 
-from cardume.errors import InputError
 from cardume.missions.atomic import write_file
 from cardume.missions.runs import Run
 from cardume.report.ellipse import BOUND, vehicles_with_certainty
 from cardume.report.limits import limits_of
+from cardume.report.page.frame import Subject, framed, part
 from cardume.report.page.plan_view import arrow_scale, plan_view
 from cardume.report.page.series import series_view
 from cardume.report.page.space_view import space_view
@@ -27,32 +22,12 @@ from cardume.report.table import number
 from cardume.report.words import meaning
 from cardume.simulation.flight import CERTAINTY, Flight
 
-FILE_NAME = "report.html"
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
-USERS_LAW = re.compile(r": \"?([A-Za-z_][\w.]*):[A-Za-z_]\w*")  # law: my_lab.laws:my_law
 PRINTED = {"width": 680, "height": 925}  # [pixel] of charts on a page of A4, 96 to the inch
 MOVED = (
     *("north", "east", "depth", "heading", "speed", "cross_track"),
     *("north_estimate", "east_estimate", "cross_track_estimate", "current_north", "current_east"),
 )
-
-
-class LibraryMissing(InputError):
-    """The library that draws the charts is not installed."""
-
-
-def library() -> str:
-    """The text of plotly.js, from the Python package that carries it.
-
-    Raises:
-        LibraryMissing: that package is not installed.
-    """
-    try:
-        path = resources.files("plotly") / "package_data" / "plotly.min.js"
-        text = path.read_text(encoding="utf-8")
-    except (ModuleNotFoundError, FileNotFoundError):
-        raise LibraryMissing(f"{FILE_NAME} needs plotly: pip install 'cardume[report]'") from None
-    return re.sub(r"</(script)", r"<\\/\1", text, flags=re.IGNORECASE)
 
 
 def write_page(path: Path, run: Run) -> None:
@@ -83,16 +58,18 @@ def make_page(run: Run) -> str:
         "space": space_view(store),
         "series": series_view(store, limits_of(run.mission)),
     }
-    script, plotly = _part("report.js"), library()
     word, kind = badge(run)
-    return Template(_part("template.html")).substitute(
-        policy=page_policy(plotly, script),
-        version=html.escape(run.version),
-        title=html.escape(flight.mission_name),
-        style=_part("report.css"),
+    subject = Subject(
+        title=flight.mission_name,
+        subtitle=_subtitle(run),
+        version=run.version,
         verdict=word,
-        verdict_class=kind,
-        subtitle=html.escape(_subtitle(run)),
+        kind=kind,
+        mission=run.text,
+        command=("cardume run", ""),
+        seed=f"The seed, {flight.seed}, is in the file",
+    )
+    main = Template(part("main.html")).substitute(
         meaning=html.escape(meaning(flight, run, run.verdicts)),
         requirements=requirements_table(run.verdicts),
         numbers=numbers_table(flight),
@@ -101,13 +78,10 @@ def make_page(run: Run) -> str:
         plan_note=_plan_note(store),
         space_note=_space_note(figures["space"]),
         series_note=_series_note(store),
-        again=_again(run),
-        mission=html.escape(run.text),
-        speeds="".join(f'<option value="{speed}">{speed} ×</option>' for speed in SPEEDS),
-        data=_data(store, figures),
-        library=plotly,
-        script=script,
     )
+    speeds = "".join(f'<option value="{speed}">{speed} ×</option>' for speed in SPEEDS)
+    player = Template(part("player.html")).substitute(speeds=speeds)
+    return framed(subject, main, _contents(store, figures), script=part("report.js"), below=player)
 
 
 def _subtitle(run: Run) -> str:
@@ -116,18 +90,7 @@ def _subtitle(run: Run) -> str:
     return f"{fleet}, {run.duration:g} s, seed {run.flight.seed}; cardume {run.version}"
 
 
-def _part(name: str) -> str:
-    return (resources.files("cardume.report.page") / name).read_text(encoding="utf-8")
-
-
-def page_policy(*scripts: str) -> str:
-    """Nothing from a network, and no script but our own, whatever a name in the mission says."""
-    digests = (base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in scripts)
-    allowed = " ".join(f"'sha256-{digest}'" for digest in digests)
-    return f"default-src 'none'; script-src {allowed}; style-src 'unsafe-inline'; img-src data: blob:"
-
-
-def _data(store: Store, figures: Mapping[str, Any]) -> str:
+def _contents(store: Store, figures: Mapping[str, Any]) -> dict[str, Any]:
     flight = store.flight
     for name in MOVED:
         store.keep(name)
@@ -137,7 +100,7 @@ def _data(store: Store, figures: Mapping[str, Any]) -> str:
             store.column(name, vehicle)
     delays = np.asarray(flight.messages["time_received"], float) - np.asarray(flight.messages["time_sent"], float)
     known = delays[np.isfinite(delays)]
-    contents = {
+    return {
         "vehicles": list(flight.vehicle_names),
         "colors": [color(k) for k in range(len(flight.vehicle_names))],
         "figures": figures,
@@ -150,8 +113,6 @@ def _data(store: Store, figures: Mapping[str, Any]) -> str:
         "printed": PRINTED,
         "store": store.contents(),
     }
-    text = json.dumps(contents, allow_nan=False, separators=(",", ":"))
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _numbers_note(flight: Flight) -> str:
@@ -199,21 +160,3 @@ def _series_note(store: Store) -> str:
             "log.nc has them."
         )
     return " ".join(parts)
-
-
-def _again(run: Run) -> str:
-    encoded = base64.b64encode(run.text.encode()).decode("ascii")
-    steps = [
-        f"<p>Install cardume {html.escape(run.version)}, save the mission below as "
-        f'<a download="mission.yaml" href="data:text/yaml;base64,{encoded}">mission.yaml</a>, and type</p>'
-    ]
-    users = sorted(set(USERS_LAW.findall(run.text)))
-    allow = " --allow-code FOLDER" if users else ""
-    steps.append(f"<pre>cardume run mission.yaml{allow}</pre>")
-    steps.append(f"<p>The seed, {run.flight.seed}, is in the file: the same version gives the same bits.</p>")
-    if users:
-        names = ", ".join(f"<code>{html.escape(name)}</code>" for name in users)
-        steps.append(f"<p>FOLDER is where the laws of {names} are, which are not part of cardume.</p>")
-    if re.search(r"\bfile: ", run.text):
-        steps.append("<p>The files that it names must lie where it says.</p>")
-    return "\n".join(steps)

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from cardume.report import style
-from cardume.report.study.common import as_results, dress, percent
+from cardume.report.study.common import as_results, dress, histogram, percent
 from cardume.studies.answers.regions import WANTED
 from cardume.studies.answers.requirements import Chance, chance_of_all, requirements
 from cardume.studies.answers.results import Results
@@ -76,11 +76,12 @@ def _draw_chances(axes: Any, rows: list[tuple[str, Chance]]) -> None:
     axes.set_ylim(len(rows) - 0.5, -0.5)
     low = min([100.0 * one.low for _, one in rows])
     axes.set_xlim(max(0.0, low - 0.08 * (100.0 - low) - 0.5), 100.5)
-    dress(axes, "holds in so many missions, with Wilson's 95 % interval", "% of the missions")
+    dress(axes, "share of the missions in which it holds; line: its 95 % interval, by Wilson", "% of the missions")
     axes.tick_params(axis="y", length=0.0)
     axes.grid(axis="y", visible=False)
 
 
 def _draw_times(axes: Any, times: np.ndarray) -> None:
-    axes.hist(times, bins=min(40, max(8, int(np.sqrt(times.size)))), color=style.color(1), alpha=0.7)
+    bars = histogram(times, is_trimmed=False)
+    axes.stairs(bars.counts, bars.edges, fill=True, color=style.color(1), alpha=0.7)
     dress(axes, f"when {times.size} missions first missed something", "time in the mission [s]", "missions")

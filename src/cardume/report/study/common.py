@@ -2,7 +2,9 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from cardume.report import style
 from cardume.simulation.flight import METRICS
@@ -76,6 +78,47 @@ def grid_of(count: int, width: float, height: float, most_columns: int = 2, **ho
     for unused in axes[count:]:
         unused.set_visible(False)
     return figure, axes[:count]
+
+
+class Histogram(NamedTuple):
+    """How many values lie where.
+
+    Attributes:
+        counts: (n,) values in each bin.
+        edges: (n + 1,) of the bins.
+        outside: values that lie far from all others and are in no bin.
+    """
+
+    counts: np.ndarray
+    edges: np.ndarray
+    outside: int
+
+
+def histogram(values: np.ndarray, *, is_trimmed: bool = True) -> Histogram:
+    """About as many bins as the root of the number of values, from 8 to 40.
+
+    A few stragglers would leave the bulk a single bar, so they are counted apart.
+
+    Args:
+        values: (n,) [any] finite, at least one.
+        is_trimmed: whether what lies far outside is left out.
+    """
+    inside = values
+    if is_trimmed:
+        low, high = np.quantile(values, (0.005, 0.995))
+        room = 0.15 * max(high - low, 1e-12 * max(1.0, abs(high)))
+        inside = values[(values >= low - room) & (values <= high + room)]
+    counts, edges = np.histogram(inside, bins=min(40, max(8, int(np.sqrt(inside.size)))))
+    return Histogram(counts, edges, values.size - inside.size)
+
+
+def runs_axis(outside: int) -> str:
+    """What the axis of a histogram counts.
+
+    Args:
+        outside: values that are in no bin.
+    """
+    return f"runs, {outside} further out" if outside else "runs"
 
 
 def percent(share: float, digits: int = 3) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from cardume.report import style
-from cardume.report.study.common import as_results, dress, grid_of, title_of
+from cardume.report.study.common import as_results, dress, grid_of, histogram, runs_axis, title_of
 from cardume.studies.answers.distributions import Distribution, distribution
 from cardume.studies.answers.results import Results
 
@@ -49,11 +49,8 @@ def has_distributions(results: Results) -> bool:
 def _draw_histogram(axes: Any, results: Results, metric: str, case: tuple[int, ...]) -> None:
     values = results.values(metric)[case]
     known, found = values[np.isfinite(values)], distribution(results, metric, case)
-    # A few stragglers would leave the bulk a single bar: what lies far outside is told, not drawn.
-    low, high = np.quantile(known, (0.005, 0.995))
-    room = 0.15 * max(high - low, 1e-12 * max(1.0, abs(high)))
-    inside = known[(known >= low - room) & (known <= high + room)]
-    axes.hist(inside, bins=min(40, max(8, int(np.sqrt(inside.size)))), color=BAR, zorder=1)
+    bars = histogram(known)
+    axes.stairs(bars.counts, bars.edges, fill=True, color=BAR, zorder=1)
     for one in (found.quantiles[0], found.median, found.quantiles[-1]):
         if np.isfinite([one.low, one.high]).all():
             axes.axvspan(one.low, one.high, color=style.color(0), alpha=0.18, lw=0.0, zorder=2)
@@ -63,8 +60,7 @@ def _draw_histogram(axes: Any, results: Results, metric: str, case: tuple[int, .
     axes.plot(found.mean.mean, 1.06 * top, "o", ms=4.5, mfc="white", mec=style.color(1), mew=1.2)
     axes.set_ylim(0.0, 1.16 * top)
     _mark_limits(axes, results, metric)
-    outside = known.size - inside.size
-    dress(axes, title_of(metric), "", f"runs, {outside} further out" if outside else "runs")
+    dress(axes, title_of(metric), "", runs_axis(bars.outside))
     axes.grid(visible=False)
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 from cardume.errors import CardumeError, InputError
-from cardume.report.page.page import LibraryMissing
+from cardume.report.page.frame import FILE_NAME, LibraryMissing
 from cardume.report.study.common import as_results
 from cardume.report.study.figures import STUDY_FIGURES, WORST, save_study_figure, save_study_figures
-from cardume.report.study.page.page import FILE_NAME, Worst, write_study_page
+from cardume.report.study.page.page import Worst, write_study_page
 from cardume.report.study.worst_flights import draw_worst
 from cardume.studies.answers.again import fly_again
 from cardume.studies.answers.results import Results

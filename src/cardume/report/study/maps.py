@@ -24,7 +24,7 @@ MOST_WRITTEN = 64  # cells with their numbers in them
 SURE, SURELY_NOT = "o", "x"
 UNEVEN = 2.5  # the widest gap between options over the narrowest, from which they are drawn one after the other
 MOST_TICKS = 12
-LEGEND = "white line: 95 %, dashed: both ends of its interval; dot: surely holds so often, cross: surely not"
+LEGEND = "lines: 95 % in the middle of its interval, dashed: at the ends; dot: surely holds so often, cross: surely not"
 
 
 def draw_map(study: Any, width: float = style.WIDTH, keys: tuple[str, str] | None = None, metric: str = "") -> Any:

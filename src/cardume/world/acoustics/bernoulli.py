@@ -25,7 +25,7 @@ def bernoulli(
         link: range r and a uniform draw.
         loss: [-] probability, 0 to 1.
         delay: [s] from the sending to the arrival at range 0: time on the air and processing.
-        sound_speed: [m/s] c.
+        sound_speed: [m/s] c, by which a message takes longer from farther away.
         max_range: [m] beyond which everything is lost.
 
     Returns:

@@ -96,7 +96,7 @@ def medium_of(
         authentication: [-] bytes of a code that proves who sent a message.
         source_level_db: [dB] re 1 uPa at 1 m; modems of one network are alike.
         frequency: [Hz] in the middle of the band.
-        bandwidth: [Hz] B.
+        bandwidth: [Hz] B, over which noise is heard.
         half_db: [dB] signal to noise, both in the band, at which half of the packets are lost; of the logistic curve.
         width_db: [dB] of that slope.
         packet_errors: [-] which curve: `logistic` (0), or `fsk` (1), which is theory and needs no numbers.
@@ -104,12 +104,12 @@ def medium_of(
         spreading: [-] k of k 10 log10(r): 2 spherical, 1.5 the usual compromise.
         absorption: [-] which formula: `francois_garrison` (0), or `ainslie_mccolm` (1), which is simpler.
         sound_speed: [m/s] c; 0: from temperature, salinity and water_depth.
-        temperature_celsius: [-] deg C.
-        salinity: [-] practical.
-        acidity: [-] pH.
+        temperature_celsius: [-] of the water, deg C.
+        salinity: [-] of the water, practical.
+        acidity: [-] of the water, pH.
         water_depth: [m] at which the sound goes.
         shipping: [-] 0 no ships to 1 many.
-        wind_speed: [m/s]
+        wind_speed: [m/s] whose waves make noise.
         platform_noise_db: [dB] that the listener's own vehicle adds to the noise.
         loss: [-] share of the time in which a link is out.
         burst: [s] mean length of an outage; 0: each message is lost by itself.

@@ -37,7 +37,7 @@ def ekman(
         turning_depth: [m] D, at which it has fallen to 1 / e; pi D is the depth where it flows against the surface.
         turn: [rad] from the surface to D, > 0 clockwise; 0: it fades without turning.
         variation_sigma: [m/s] standard deviation of the variation x, in each of north and east, at all depths alike.
-        variation_time_constant: [s] of x.
+        variation_time_constant: [s] after which x is another.
 
     Returns:
         Velocity of the water [m/s] and the next memory.

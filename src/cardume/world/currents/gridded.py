@@ -29,7 +29,7 @@ def gridded(
         memory: the variation of the tick before; the first one is drawn from the stationary distribution.
         dt: [s] tick.
         variation_sigma: [m/s] standard deviation of the variation, in each of north and east.
-        variation_time_constant: [s] T.
+        variation_time_constant: [s] T, after which the variation is another.
 
     Returns:
         Velocity of the water [m/s] and the next memory.

@@ -34,10 +34,10 @@ def power_law(
         dt: [s] tick.
         speed: [m/s] at the surface.
         towards: [rad] b, where it flows to, clockwise from north.
-        seabed_depth: [m] H.
-        exponent: [-] a.
+        seabed_depth: [m] H, where the current ends.
+        exponent: [-] a, how fast it falls with depth; 1/7 is usual.
         variation_sigma: [m/s] standard deviation of the variation x, in each of north and east, at all depths alike.
-        variation_time_constant: [s] of x.
+        variation_time_constant: [s] after which x is another.
 
     Returns:
         Velocity of the water [m/s] and the next memory.

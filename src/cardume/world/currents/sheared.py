@@ -31,7 +31,7 @@ def sheared(
         dt: [s] tick.
         scale: [-] factor on the whole profile, for studies.
         variation_sigma: [m/s] standard deviation of the variation x, in each of north and east, at all depths alike.
-        variation_time_constant: [s] of x.
+        variation_time_constant: [s] after which x is another.
 
     Returns:
         Velocity of the water [m/s] and the next memory.

@@ -32,14 +32,14 @@ def step(
         noise: of the mission's water, the same for all vehicles.
         memory: the variation of the tick before.
         dt: [s] tick.
-        speed: [m/s] of V_1.
+        speed: [m/s] of V_1, the current before the change.
         towards: [rad] where V_1 flows to, clockwise from north.
-        later_speed: [m/s] of V_2.
+        later_speed: [m/s] of V_2, the current after it.
         later_towards: [rad] where V_2 flows to.
         at: [s] when the change begins, since the start of the mission.
         ramp: [s] how long it takes.
         variation_sigma: [m/s] standard deviation of the variation x, in each of north and east.
-        variation_time_constant: [s] of x.
+        variation_time_constant: [s] after which x is another.
 
     Returns:
         Velocity of the water [m/s] and the next memory.

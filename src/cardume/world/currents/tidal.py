@@ -43,7 +43,7 @@ def tidal(
         mean_speed: [m/s] of the residual current V_0.
         mean_towards: [rad] where V_0 flows to.
         variation_sigma: [m/s] standard deviation of the variation x, in each of north and east.
-        variation_time_constant: [s] of x.
+        variation_time_constant: [s] after which x is another.
 
     Returns:
         Velocity of the water [m/s] and the next memory.

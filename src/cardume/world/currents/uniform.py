@@ -45,7 +45,7 @@ def uniform(
         dt: [s] tick.
         mean: of the parameters that `mean_flow` names.
         variation_sigma: [m/s] standard deviation of the variation, in each of north and east.
-        variation_time_constant: [s] T.
+        variation_time_constant: [s] T, after which the variation is another.
 
     Returns:
         Velocity of the water [m/s] and the next memory.

@@ -34,7 +34,7 @@ def ahrs(
         heading_sigma: [rad] white noise of the heading.
         heading_bias: [rad] > 0 reads too far clockwise.
         deviation: [rad] A, what iron that turns with the vehicle adds at worst.
-        deviation_phase: [rad] phi.
+        deviation_phase: [rad] phi, which headings the deviation is largest at.
         yaw_rate_sigma: [rad/s] white noise of the yaw rate.
         yaw_rate_bias: [rad/s] > 0 reads a turn to starboard.
         attitude_sigma: [rad] white noise of roll and of pitch.

@@ -24,7 +24,7 @@ def altimeter(
         truth: depth z below the surface.
         seabed: its depth b below the vehicle.
         noise: a.
-        sigma: [m] white noise.
+        sigma: [m] white noise, standard deviation.
         bias: [m] > 0 reads too high.
         nearest: [m] below it the echo comes while the transducer still rings.
         range: [m] above it no echo is heard.

@@ -14,7 +14,7 @@ def depth(truth: VesselState, noise: Noise, sigma: NotNegative[Meters] = 0.01, b
     Args:
         truth: depth z below the surface.
         noise: a.
-        sigma: [m] white noise.
+        sigma: [m] white noise, standard deviation.
         bias: [m] > 0 reads too deep; tide and air pressure since the sensor was zeroed give 0.1 to 0.3 m.
 
     Returns:

@@ -35,8 +35,8 @@ def dvl(
         memory: the last good reading.
         sigma: [m/s] white noise of each.
         scale: [-] 1 is exact; a wrong sound speed or beam angle gives 0.1 to 1 %.
-        bias_surge: [m/s] of surge.
-        bias_sway: [m/s] of sway.
+        bias_surge: [m/s] what it reads too much of surge.
+        bias_sway: [m/s] what it reads too much of sway.
         misalignment: [rad] m, how far the log is turned to starboard about the vertical.
         invalid: [-] share of pings that fail; 0.1 in LSTS DUNE, Simulators/DVL.
         hold: [s] how long the last good reading is repeated; after that there is none, and speed comes from the shafts.

@@ -40,8 +40,8 @@ def complementary(
         motion: velocity through the water [m/s], V_m = R(psi) (u, v).
         memory: p_hat and Vc_hat.
         dt: [s] tick.
-        k1: [1/s] > 0.
-        k2: [1/s^2] > 0.
+        k1: [1/s] > 0, of the position: how fast its error is forgotten.
+        k2: [1/s^2] > 0, of the current: how fast it is learnt.
 
     Returns:
         The current Vc_hat before this step [m/s], NED, and the next memory.

@@ -15,7 +15,7 @@ def proportional(reading: ShaftReading, scale: Positive[Number] = 1.0) -> float:
 
     Args:
         reading: n, of a vehicle whose reading is its speed; NaN gives NaN.
-        scale: [-] a.
+        scale: [-] a, what the reading is multiplied by; 1 is exact.
 
     Returns:
         Surge through the water [m/s].

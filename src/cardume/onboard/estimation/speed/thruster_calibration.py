@@ -32,9 +32,9 @@ def thruster_calibration(
     Args:
         reading: n = shaft_speed [rad/s], > 0 pushes ahead; NaN gives NaN.
         thrust_coefficient: [N s^2/rad^2] c, of each thruster.
-        num_thrusters: [-] N.
+        num_thrusters: [-] N, how many push ahead.
         linear_drag: [N s/m] d >= 0; may be zero, as quadratic_drag may, but not both.
-        quadratic_drag: [N s^2/m^2] D >= 0.
+        quadratic_drag: [N s^2/m^2] D >= 0, that grows with the square of the speed.
         scale: [-] a, an error of the calibration; a = sqrt(f) where the thrust is believed to be f times what it is.
 
     Returns:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from cardume.report.page.store import color, plotly_text
-from cardume.report.study.common import title_of
+from cardume.report.study.common import histogram, runs_axis, title_of
 from cardume.report.study.distributions import has_distributions
 from cardume.report.study.influences import all_influences
 from cardume.report.study.page.plotting import (
@@ -28,7 +28,6 @@ from cardume.studies.answers.distributions import distribution
 from cardume.studies.answers.influences import Influences
 from cardume.studies.answers.results import Results
 
-BINS = 40
 MOST_INPUTS = 10
 MOST_POINTS = 400  # of a track
 
@@ -48,7 +47,7 @@ def _histogram(results: Results, metric: str) -> Chart:
     (case,) = np.ndindex(*results.shape)
     values = results.values(metric)[case]
     known, found = values[np.isfinite(values)], distribution(results, metric, case)
-    counts, edges = np.histogram(known, bins=min(BINS, max(8, int(np.sqrt(known.size)))))
+    counts, edges, outside = histogram(known)
     bars: Trace = {
         "type": "bar",
         "x": plain(0.5 * (edges[1:] + edges[:-1])),
@@ -69,7 +68,9 @@ def _histogram(results: Results, metric: str) -> Chart:
             where = {"x": limit.bound, "y": 1, "yref": "paper", "xanchor": "left", "yanchor": "bottom"}
             notes.append({"text": "required", "showarrow": False, "font": {"size": 11}, **where})
     mean = dot(1.05 * float(counts.max()), found.mean.mean, found.mean.low, found.mean.high, RED)
-    return chart(title_of(metric), [bars, mean], shapes=shapes, annotations=notes, bargap=0, yaxis=named("runs"))
+    return chart(
+        title_of(metric), [bars, mean], shapes=shapes, annotations=notes, bargap=0, yaxis=named(runs_axis(outside))
+    )
 
 
 def influence_charts(results: Results) -> list[Chart]:

@@ -1,20 +1,14 @@
 """The page of a study as one file: words and tables first, then the charts, and the library that draws them."""
 
-import base64
 import html
-import json
-import re
-import shlex
 from collections.abc import Sequence
-from importlib import resources
 from pathlib import Path
-from string import Template
 from typing import Any
 
 import numpy as np
 
 from cardume.missions.atomic import write_file
-from cardume.report.page.page import library, page_policy
+from cardume.report.page.frame import Subject, framed, part
 from cardume.report.study.blocks import Block, study_blocks
 from cardume.report.study.common import as_results, percent
 from cardume.report.study.page.charts import distribution_charts, flight_chart, influence_charts, law_charts
@@ -26,15 +20,15 @@ from cardume.studies.answers.requirements import chance_of_all
 from cardume.studies.answers.results import Results
 from cardume.studies.answers.worst import WorstRun
 
-FILE_NAME = "report.html"
+HERE = "cardume.report.study.page"
 Worst = Sequence[tuple[WorstRun, Flight]]
 
 SECTIONS = (
     (
         "map",
         "Where it holds",
-        "White: where the requirement holds in 95 % of the missions; dotted: both ends of its 95 % interval, by Wilson,"
-        " at each point. Between the cases the logit of the probability is taken for straight.",
+        "White: where the middle of the probability's 95 % interval, by Wilson, is 0.95; dotted: where its ends are, so"
+        " that between them nothing is sure. Between the cases the logit of the probability is taken for straight.",
         map_charts,
     ),
     (
@@ -90,35 +84,33 @@ def make_study_page(study: Any, worst: Worst = ()) -> str:
         LibraryMissing: the library that draws the charts is not installed.
     """
     results = as_results(study)
-    plotly, script = library(), _part("study.js")
     charts: dict[str, Chart] = {}
     sections = [_tables(study_blocks(results))]
     for name, title, note, make in SECTIONS:
         sections.append(_charts(charts, name, title, note, make(results)))
     sections.append(_worst(charts, results, worst))
+    words = "".join(f"<p>{html.escape(sentence)}</p>" for sentence in study_words(results))
+    main = [f'<section aria-label="What it says">{words}</section>', *(section for section in sections if section)]
+    style, script = (part(name, HERE) for name in ("study.css", "study.js"))
+    return framed(_subject(results), "\n".join(main), {"charts": charts}, script=script, style=style)
+
+
+def _subject(results: Results) -> Subject:
     attrs = results.dataset.attrs
     word, kind = _badge(results)
-    mission = str(attrs.get("mission", ""))
-    return Template(_part("study.html")).substitute(
-        policy=page_policy(plotly, script),
-        version=html.escape(str(attrs.get("version", ""))),
-        title=html.escape(str(attrs.get("title", "study"))),
-        style=(resources.files("cardume.report.page") / "report.css").read_text(encoding="utf-8") + _part("study.css"),
+    sampling = str(attrs.get("sampling", "monte_carlo"))
+    options = f"--runs {len(results.seeds)}" + (f" --sampling {sampling}" if sampling != "monte_carlo" else "")
+    version = str(attrs.get("version", ""))
+    return Subject(
+        title=str(attrs.get("title", "study")),
+        subtitle=f"{results.num_flown} missions, sampled by {sampling.replace('_', ' ')}; cardume {version}",
+        version=version,
         verdict=word,
-        verdict_class=kind,
-        subtitle=html.escape(_subtitle(results)),
-        words="".join(f"<p>{html.escape(sentence)}</p>" for sentence in study_words(results)),
-        sections="\n".join(section for section in sections if section),
-        again=_again(mission, str(attrs.get("command", ""))),
-        mission=html.escape(mission),
-        data=_data(charts),
-        library=plotly,
-        script=script,
+        kind=kind,
+        mission=str(attrs.get("mission", "")),
+        command=("cardume study", options),
+        seed=f"Seeds count from the one in the file, {results.seeds[0]}",
     )
-
-
-def _part(name: str) -> str:
-    return (resources.files("cardume.report.study.page") / name).read_text(encoding="utf-8")
 
 
 def _badge(results: Results) -> tuple[str, str]:
@@ -130,12 +122,6 @@ def _badge(results: Results) -> tuple[str, str]:
     found = chance_of_all(results, case)
     kind = "good" if found.low >= 0.95 else "bad" if found.high < 0.95 else "neutral"
     return f"required holds in {percent(found.share)}", kind
-
-
-def _subtitle(results: Results) -> str:
-    attrs = results.dataset.attrs
-    sampling = str(attrs.get("sampling", "")).replace("_", " ")
-    return f"{results.num_flown} missions, sampled by {sampling}; cardume {attrs.get('version', '')}"
 
 
 def _tables(blocks: Sequence[Block]) -> str:
@@ -182,21 +168,3 @@ def _worst(charts: dict[str, Chart], results: Results, worst: Worst) -> str:
         '<section class="wide" aria-labelledby="h-worst"><h2 id="h-worst">The worst runs</h2>'
         f'<p class="note">{note}</p><div class="worst">{"".join(places)}</div></section>'
     )
-
-
-def _again(mission: str, command: str) -> str:
-    encoded = base64.b64encode(mission.encode()).decode("ascii")
-    saved = f'<a download="mission.yaml" href="data:text/yaml;base64,{encoded}">mission.yaml</a>'
-    options = re.sub(r"^.*?\bstudy\s+(?:'[^']*'|\S+)\s*", "", command)
-    kept = re.sub(r"(?:-o\s+(?:'[^']*'|\S+)|--set\s+(?:'[^']*'|\S+)|--resume)\s*", "", options).strip()
-    typed = shlex.join(["cardume", "study", "mission.yaml"]) + (f" {kept}" if kept else "")
-    return f"<p>Save the mission below as {saved}, and type</p><pre>{html.escape(typed)}</pre>"
-
-
-def _data(charts: dict[str, Chart]) -> str:
-    text = json.dumps({"charts": charts}, allow_nan=False, separators=(",", ":"), default=_plain)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-
-
-def _plain(value: Any) -> Any:
-    return value.item() if hasattr(value, "item") else str(value)
