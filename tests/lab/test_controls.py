@@ -90,7 +90,8 @@ def test_what_a_law_declares_is_what_the_slider_has(tmp_path: Path) -> None:
     _, controls = desk_with(tmp_path, "paper/figure-5")
     by_key = {control.keys[0]: control for control in controls}
     lookahead = by_key["vehicles.surface.guidance.lookahead"]
-    assert (lookahead.value, lookahead.unit, lookahead.low, lookahead.meaning) == (5.0, "m", 0.0, "d > 0.")
+    assert (lookahead.value, lookahead.unit, lookahead.low) == (5.0, "m", 0.0)
+    assert lookahead.meaning == "d > 0, how far ahead on the tangent it looks."
     assert lookahead.keys == tuple(f"vehicles.{name}.guidance.lookahead" for name in ("surface", "port", "starboard"))
     assert lookahead.is_log
     loss = by_key["vehicles.surface.acoustics.loss"]

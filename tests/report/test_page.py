@@ -2,6 +2,7 @@
 
 import base64
 import html.parser
+import itertools
 import json
 import re
 from dataclasses import replace
@@ -15,7 +16,7 @@ from cardume.report.message_lanes import links
 from cardume.report.page import frame as pages
 from cardume.report.page.frame import LibraryMissing
 from cardume.report.page.page import make_page, write_page
-from cardume.report.page.series import series_view
+from cardume.report.page.series import BOTTOM, LANE_PRINTED, LANES_PRINTED, MOST_LANES, TOP, series_view
 from cardume.report.page.store import MOST_CELLS, Store, packed
 from cardume.simulation.flight import CERTAINTY, CHANNELS, MESSAGE_COLUMNS, Flight
 from report.runs import HOSTILE, hostile_run, make_run
@@ -201,3 +202,21 @@ def test_every_channel_that_a_panel_names_exists() -> None:
     derived = {"north_error", "east_error", "ahead_of_mean", "heading_error_deg"}
     columns = series_view(store := Store(flight), {}) and store.contents()["columns"]
     assert set(columns) <= set(CHANNELS) | derived
+
+
+@pytest.mark.parametrize("num_vehicles", [1, 2, 6])
+def test_on_paper_a_lane_of_messages_holds_its_words(num_vehicles: int) -> None:
+    flight = make_flight(num_rows=71, names=tuple("abcdef"[:num_vehicles]))
+    figure, lanes = series_view(Store(flight), {}), min(len(links(flight)), MOST_LANES)
+    printed = figure["printed"]
+    room = printed["height"] - TOP - BOTTOM
+    for domains in (figure["domains"], printed["domains"]):
+        assert domains[0][1] == 1.0
+        assert domains[-1][0] == pytest.approx(0.0, abs=1e-12)
+        assert all(low < high for low, high in domains)
+        assert all(below[1] < above[0] for above, below in itertools.pairwise(domains))
+    low, high = printed["domains"][-1]
+    if lanes and LANE_PRINTED * lanes <= LANES_PRINTED * room:
+        assert room * (high - low) / lanes == pytest.approx(LANE_PRINTED)
+    else:
+        assert printed["domains"] == figure["domains"]

@@ -9,7 +9,7 @@ import numpy as np
 from cardume.missions.runs import Run
 from cardume.missions.summary import Verdict
 from cardume.report.page.store import color, packed
-from cardume.report.page.tables import badge, meaning_of, words_of
+from cardume.report.page.tables import NO_BREAK, badge, meaning_of, words_of
 from cardume.report.table import COLUMNS, NOTHING, cells_of, share_heard
 from cardume.report.words import meaning
 from cardume.simulation.flight import METRICS, Flight
@@ -100,9 +100,9 @@ def required(verdict: Verdict) -> dict[str, Any]:
     return {
         "metric": verdict.metric,
         "what": f"{verdict.vehicle}: {name}" if verdict.vehicle else name,
-        "wanted": f"{verdict.bound} {verdict.wanted:g} {verdict.unit}".strip(),
+        "wanted": f"{verdict.bound} {verdict.wanted:g}{NO_BREAK}{verdict.unit}".strip(),
         "limit": None if verdict.vehicle else _plain(verdict.wanted),  # of the fleet, which a study shows
-        "got": f"{verdict.got:.4g} {verdict.unit}".strip() if math.isfinite(verdict.got) else "no value",
+        "got": f"{verdict.got:.4g}{NO_BREAK}{verdict.unit}".strip() if math.isfinite(verdict.got) else "no value",
         "worst": verdict.worst if verdict.worst and not verdict.vehicle else "",
         "met": verdict.met,
         "meaning": METRICS[verdict.metric].meaning,

@@ -56,7 +56,8 @@ export const makeCharts = ({ plan, series, base }) => {
     ...base, uirevision: name, hovermode: "closest", dragmode: isCoarse ? false : "pan",
     xaxis: { title: { text: "east [m]" }, constrain: "domain" },
     yaxis: { title: { text: "north [m]" }, scaleanchor: "x", scaleratio: 1, constrain: "domain" },
-    margin: { l: 52, r: 8, t: 4, b: 40 },
+    margin: { l: 52, r: 34, t: 4, b: 40 },
+    modebar: { ...base.modebar, orientation: "v" }, // beside the plan, not over its legend
     legend: { orientation: "h", y: 1, yanchor: "bottom", x: 0 },
   });
   const seriesFigure = (flight, pinned) => {

@@ -23,7 +23,6 @@ from cardume.report.words import meaning
 from cardume.simulation.flight import CERTAINTY, Flight
 
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
-PRINTED = {"width": 680, "height": 925}  # [pixel] of charts on a page of A4, 96 to the inch
 MOVED = (
     *("north", "east", "depth", "heading", "speed", "cross_track"),
     *("north_estimate", "east_estimate", "cross_track_estimate", "current_north", "current_east"),
@@ -110,7 +109,6 @@ def _contents(store: Store, figures: Mapping[str, Any]) -> dict[str, Any]:
         "messages": pack_messages(flight),
         "slowest": float(known.max()) if known.size else 0.0,  # [s] on the way
         "start": float(store.times[len(store.times) // 3]) if len(store.times) else 0.0,
-        "printed": PRINTED,
         "store": store.contents(),
     }
 
@@ -145,7 +143,7 @@ def _plan_note(store: Store) -> str:
 def _space_note(figure: Mapping[str, Any]) -> str:
     stretch = figure["stretch"]
     drawn = "Depths are drawn to scale." if stretch < 1.05 else f"Depths are drawn {stretch:.2g} times too large."
-    return f"Drag to turn, scroll to come nearer. {drawn}"
+    return f'<span class="screen">Drag to turn, scroll to come nearer.</span> {drawn}'
 
 
 def _series_note(store: Store) -> str:

@@ -48,8 +48,9 @@ def plan_view(store: Store) -> dict[str, Any]:
         "yaxis": {"title": {"text": "north [m]"}, "scaleanchor": "x", "scaleratio": 1, "constrain": "domain"},
         "hovermode": "closest",
         "dragmode": "pan",
-        "margin": {"l": 55, "r": 10, "t": 10, "b": 45},
+        "margin": {"l": 55, "r": 36, "t": 10, "b": 45},
         "legend": {"orientation": "h", "y": 1.0, "yanchor": "bottom", "x": 0},
+        "modebar": base_layout()["modebar"] | {"orientation": "v"},  # beside the plan, not over its legend
     }
     moving = {name: len(fixed) + place for place, name in enumerate([*ellipses, *MOVING])}
     return {"data": [*fixed, *ellipses.values(), *_moving(store)], "layout": layout, "moving": moving}

@@ -180,7 +180,7 @@
     time = Math.min(last, Math.max(0, wanted));
     slider.value = time;
     const text = `${time.toFixed(record < 1 ? 1 : 0)} s`;
-    byId("clock").textContent = `${text} of ${shown(last, 0)} s`;
+    byId("clock").textContent = text;
     byId("instant").textContent = text;
     slider.setAttribute("aria-valuetext", text);
     const { now, traces } = moved(time);
@@ -228,15 +228,19 @@
     byId("series").on("plotly_click", ({ points: [point] }) => { if (playing.on) stop(); setTime(point.x); });
     byId("series").on("plotly_relayout", moveCursor);
     byId("series").on("plotly_afterplot", moveCursor);
-    const { width, height } = report.printed;
+    const series = report.figures.series, { width } = series.printed;
+    const axes = (domains, most) => Object.fromEntries(domains.flatMap((domain, k) => {
+      const name = `yaxis${k ? k + 1 : ""}`;
+      return [[`${name}.domain`, domain], [`${name}.nticks`, Math.min(most, series.layout[name].nticks)]];
+    }));
     window.addEventListener("beforeprint", () => {
       if (playing.on) stop();
       Plotly.relayout(byId("plan"), { width, autosize: false });
-      Plotly.relayout(byId("series"), { width, height, autosize: false });
+      Plotly.relayout(byId("series"), { width, height: series.printed.height, autosize: false, ...axes(series.printed.domains, 4) });
     });
     window.addEventListener("afterprint", () => {
       Plotly.relayout(byId("plan"), { width: null, autosize: true });
-      Plotly.relayout(byId("series"), { width: null, height: report.figures.series.height, autosize: true });
+      Plotly.relayout(byId("series"), { width: null, height: series.height, autosize: true, ...axes(series.domains, 9) });
     });
   };
 

@@ -1,6 +1,6 @@
 """The time series of the page: one panel for each kind of number that matters in a flight, one axis of time."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +14,8 @@ from cardume.simulation.flight import Flight
 PANEL, GAP, TOP, BOTTOM = 118, 40, 60, 50  # [pixel]
 LANE = 52  # [pixel] of the message timeline, per link
 MOST_LANES = 24
+PRINTED = {"width": 680, "height": 925}  # [pixel] of the chart on a page of A4, 96 to the inch
+LANE_PRINTED, LANES_PRINTED = 30, 0.35  # [pixel] of a lane on paper, as far as all take no larger share of the chart
 FAR_LIMIT = 2.5  # a limit so many times beyond what was used is told, not drawn
 CLIPPED = 2.0  # a transient so much larger than what follows runs out of its panel at first
 
@@ -46,13 +48,14 @@ def series_view(store: Store, limits: Limits) -> dict[str, Any]:
         limits: of the actuators, per channel and vehicle.
 
     Returns:
-        `data` and `layout` as Plotly takes them, with references in place of columns; `height` [pixel].
+        `data` and `layout` as Plotly takes them, with references in place of columns; `height` [pixel]; `domains` of
+        the axes from the top, and `printed`: width and height [pixel] and domains on paper.
     """
     flight = store.flight
     derive(store)
     panels = chosen_panels(flight)
     lanes = links(flight)[:MOST_LANES]
-    heights = [PANEL] * len(panels) + ([LANE * len(lanes)] if lanes else [])
+    heights: list[int] = [PANEL] * len(panels) + ([LANE * len(lanes)] if lanes else [])
     height = TOP + BOTTOM + sum(heights) + GAP * (len(heights) - 1)
     layout = base_layout() | {
         "height": height,
@@ -66,18 +69,34 @@ def series_view(store: Store, limits: Limits) -> dict[str, Any]:
         "xaxis": _time_axis(store, len(heights)),
     }
     data: list[dict[str, Any]] = []
-    top = 1.0
-    for place, tall in enumerate(heights, start=1):
-        share = tall / (height - TOP - BOTTOM)
-        domain = [max(0.0, top - share), top]
-        top -= share + GAP / (height - TOP - BOTTOM)
+    domains = _domains(heights)
+    for place, domain in enumerate(domains, start=1):
         if place <= len(panels):
             _add_panel(data, layout, store, (panels[place - 1], place, domain), limits)
         else:
             layout[_axis_name(place)] = lane_layout(lanes) | {"domain": domain}
             layout["annotations"] += lane_annotations(place)
             data += lane_traces(flight, lanes, f"y{place}")
-    return {"data": data, "layout": layout, "height": height}
+    printed = PRINTED | {"domains": _domains(_heights_on_paper(heights, len(lanes)))}
+    return {"data": data, "layout": layout, "height": height, "domains": domains, "printed": printed}
+
+
+def _domains(heights: Sequence[float]) -> list[list[float]]:
+    """The share of the chart that each axis has, from the top."""
+    whole, top, found = sum(heights) + GAP * (len(heights) - 1), 1.0, []
+    for height in heights:
+        found.append([max(0.0, top - height / whole), top])
+        top -= (height + GAP) / whole
+    return found
+
+
+def _heights_on_paper(heights: Sequence[float], num_lanes: int) -> Sequence[float]:
+    """Heights in proportion to one another; a lane has to hold its words, which do not shrink with the chart."""
+    room = PRINTED["height"] - TOP - BOTTOM
+    wanted, others = LANE_PRINTED * num_lanes / room, sum(heights[:-1]) + GAP * (len(heights) - 1)
+    if num_lanes == 0 or wanted > LANES_PRINTED or LANE * num_lanes > wanted * (others + LANE * num_lanes):
+        return heights
+    return [*heights[:-1], others * wanted / (1.0 - wanted)]
 
 
 def _time_axis(store: Store, lowest: int) -> dict[str, Any]:

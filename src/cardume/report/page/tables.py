@@ -11,6 +11,7 @@ from cardume.report.page.store import color
 from cardume.report.table import COLUMNS, NOTHING, Column, cells_of
 from cardume.simulation.flight import METRICS, Flight
 
+NO_BREAK = "\u00a0"  # between a number and its unit, which belong on one line
 MOST_VEHICLES = 60  # in the tables
 NOW = (
     *("north [m]", "east [m]", "depth [m]", "heading [deg]", "speed over ground [m/s]"),
@@ -50,12 +51,12 @@ def requirements_table(verdicts: Sequence[Verdict]) -> str:
 def _requirement(verdict: Verdict) -> str:
     name = verdict.metric.replace("_", " ")
     of = f"{verdict.vehicle}: {name}" if verdict.vehicle else name
-    got = f"{verdict.got:.4g} {verdict.unit}" if math.isfinite(verdict.got) else "no value"
+    got = f"{verdict.got:.4g}{NO_BREAK}{verdict.unit}" if math.isfinite(verdict.got) else "no value"
     if verdict.worst and not verdict.vehicle:
         got += f" ({verdict.worst})"
     word, kind = ("✓ met", "good") if verdict.met else ("✗ missed", "bad")
     meaning = METRICS[verdict.metric].meaning if verdict.metric in METRICS else ""
-    texts = [of, f"{verdict.bound} {verdict.wanted:g} {verdict.unit}", got]
+    texts = [of, f"{verdict.bound} {verdict.wanted:g}{NO_BREAK}{verdict.unit}", got]
     cells = "".join(f"<td>{html.escape(text)}</td>" for text in texts)
     return f'<tr title="{html.escape(meaning)}">{cells}<td class="text {kind}"><b>{word}</b></td></tr>'
 

@@ -124,6 +124,8 @@ def _title(what: str, one: Map) -> str:
 
 
 def _draw_cells(axes: Any, one: Map, scales: list[Scale], limits: list[float], form: str, factor: float) -> Any:
+    import matplotlib.patheffects as effects
+
     values = factor * one.middle
     x, y = scales
     drawn = axes.pcolormesh(x.edges, y.edges, values, cmap=COLORS, vmin=limits[0], vmax=limits[1], lw=0.0)
@@ -131,14 +133,10 @@ def _draw_cells(axes: Any, one: Map, scales: list[Scale], limits: list[float], f
         dark = limits[0] + 0.55 * (limits[1] - limits[0])
         for (row, column), value in np.ndenumerate(values):
             if np.isfinite(value):
-                how = {
-                    "ha": "center",
-                    "va": "center",
-                    "fontsize": 6.0,
-                    "zorder": 6,
-                    "color": "white" if value < dark else "black",
-                }
-                axes.text(x.places[column], y.places[row], form.format(value), **how)
+                # in the color of its cell, so that lines end before the number
+                halo = effects.withStroke(linewidth=3.0, foreground=drawn.cmap(drawn.norm(value)))
+                text = axes.text(x.places[column], y.places[row], form.format(value), ha="center", va="center")
+                text.set(fontsize=6.0, zorder=6, color="white" if value < dark else "black", path_effects=[halo])
     return drawn
 
 
