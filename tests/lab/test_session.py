@@ -19,8 +19,8 @@ from cardume.lab.handlers import Lab
 from cardume.lab.session import LARGEST_SEED, Session
 from cardume.missions.flying import fly_mission
 from cardume.missions.opening import open_mission
+from cardume.studies.constants import FLEET
 from cardume.studies.flying import fly_seeds
-from cardume.studies.run_table import FLEET
 from lab.serving import calling, get, serving
 from report.packs import unpacked
 
