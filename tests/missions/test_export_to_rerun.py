@@ -135,6 +135,28 @@ def test_messages_are_lines_of_text(recording: Path) -> None:
 
 
 @needs_rerun
+def test_what_the_layout_shows_is_in_the_recording_in_the_colors_of_the_tracks(recording: Path) -> None:
+    from rerun.chunk import RrdReader
+
+    reader, shown = RrdReader(str(recording)), []
+    for chunk in reader.stream(store=reader.blueprints()[0]).to_chunks():
+        batch = chunk.to_record_batch()
+        shown += [
+            row for name in batch.schema.names if name.endswith(":query") for row in batch.column(name).to_pylist()
+        ]
+    read = Read(recording)
+    entities = {entity for entity, _ in read.tables}
+    named = [place for rows in shown for place in rows if not place.startswith("$origin")]
+    assert len(named) == len(FLIGHT.vehicle_names) + 1
+    assert set(named) <= entities
+    for name in FLIGHT.vehicle_names:
+        assert read.still(f"/channels/{name}/cross_track", "SeriesLines:names") == [name]
+        (line,) = read.still(f"/channels/{name}/cross_track", "SeriesLines:colors")
+        (arrow,) = read.still(f"/world/{name}/true/shape", "Arrows3D:colors")
+        assert line == arrow
+
+
+@needs_rerun
 def test_reruns_own_program_finds_no_fault(recording: Path, tmp_path: Path) -> None:
     hostile = tmp_path / "hostile.rrd"
     hostile.write_bytes(rrd_of(make_flight(num_rows=3, names=(*HOSTILE[:2], "a/b"))))

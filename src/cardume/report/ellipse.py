@@ -6,7 +6,7 @@ import numpy as np
 
 from cardume.simulation.flight import CERTAINTY, Flight
 
-LABEL = "95 % of its own error"
+LABEL = "expected error, 95 %"
 # A Gaussian in a plane lies within n' P^-1 n <= bound with probability 1 - exp(-bound / 2), chi-square of 2 degrees.
 BOUND = -2.0 * math.log(1.0 - 0.95)  # [1] 5.991
 

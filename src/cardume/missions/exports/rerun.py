@@ -140,8 +140,13 @@ def _places(flight: Flight, vehicle: int, ending: str) -> np.ndarray:
 
 
 def _write_channels(recording: Any, flight: Flight, vehicle: int) -> None:
+    import rerun
+
+    look = rerun.SeriesLines(colors=[COLORS[vehicle % len(COLORS)]], names=[flight.vehicle_names[vehicle]])
     for channel in CHANNELS:
         parts = (SCALARS, flight.vehicle_names[vehicle], channel)
+        if np.isfinite(flight.channels[channel][:, vehicle]).any():
+            _write_still(recording, _entity(*parts), look)
         _write_scalars(recording, parts, flight.times, flight.channels[channel][:, vehicle])
 
 

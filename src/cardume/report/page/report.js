@@ -235,7 +235,8 @@
     }));
     window.addEventListener("beforeprint", () => {
       if (playing.on) stop();
-      Plotly.relayout(byId("plan"), { width, autosize: false });
+      // twice: only the second time a legend of other lines stands where the axes of the first time end
+      for (let k = 0; k < 2; k++) Plotly.relayout(byId("plan"), { width, autosize: false });
       Plotly.relayout(byId("series"), { width, height: series.printed.height, autosize: false, ...axes(series.printed.domains, 4) });
     });
     window.addEventListener("afterprint", () => {
