@@ -95,7 +95,7 @@ def log_determinants_along(
     Returns:
         (..., n) [-]
 
-    Source: theory row HH, with what is forgotten between the ranges as in row V.
+    Source: closed form HH (docs/theory/closed-forms.md); what is forgotten between the ranges is as in closed form V.
     """
     level = np.hypot(offsets[..., 0], offsets[..., 1])
     lines = offsets / np.maximum(np.hypot(level, below), 1e-9)[..., None]
