@@ -15,6 +15,7 @@ from benchmarks import (
     many,
     single_mission,
     studies,
+    through_water,
     users_law,
     whole_command,
 )
@@ -37,6 +38,7 @@ WORKLOADS = {
     "reference": reference.measure,
     "sizes": sizes.measure,
     "study": studies.measure,
+    "through water": through_water.measure,
 }
 WIDTH = 120  # of tables where there is no terminal, and no COLUMNS
 SMOKE_STEPS = 400  # of the calibration loop

@@ -35,20 +35,27 @@ SIMPLEST = tuple(override for overrides in TAKEN_AWAY.values() for override in o
 HAS_LANES = not config.DISABLE_JIT
 
 
-def plan_of(effort: Effort, overrides: Sequence[str] = (), allow_code: Sequence[Path] = (), log: bool = False) -> Plan:
-    """Figure-5 for 600 s, compiled for float64.
+def plan_of(
+    effort: Effort,
+    overrides: Sequence[str] = (),
+    allow_code: Sequence[Path] = (),
+    log: bool = False,
+    name: str = MISSION,
+) -> Plan:
+    """A mission for 600 s, figure-5 unless another is named, compiled for float64.
 
     Args:
         effort: a smoke run flies for less.
         overrides: as for `--set`.
         allow_code: folders with laws that the overrides name.
         log: whether a log is kept, as `cardume run` does.
+        name: of a built-in mission.
 
     Returns:
         The plan.
     """
     seconds = effort.mission_seconds()
-    mission = open_mission(MISSION, [f"duration={seconds} s", *overrides], allow_code=allow_code)
+    mission = open_mission(name, [f"duration={seconds} s", *overrides], allow_code=allow_code)
     plan = make_plan(mission, catalog(allow_code)).plan
     warm_up(plan)
     return plan if log else replace(plan, log_period=0.0)

@@ -37,6 +37,7 @@ CASES = {
     ],
     "sizes": ["3 vehicles", "10 vehicles", "10 vehicles beside 3", "2 missions", "4 missions", "beside 2"],
     "study": ["figure-5, 2 threads", "figure-5, 2 Dask workers", "Dask, beside threads"],
+    "through water": ["a fix by kalman_replay", "everything, scalar"],
     "families": ["ideal sensors", "observer", "crab", "coordination", "noisy", "bernoulli", "medusa"],
 }
 
