@@ -1,17 +1,13 @@
 """The worked missions through a modem, flown 200 times: their thresholds, and what their pages print."""
 
-import re
-import sys
-from importlib import util
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 
 from cardume.studies.statistics import paired_difference
+from studies.worked import differences, example_of, printed
 
-ROOT = Path(__file__).parents[2]
 SPEED = 0.5  # [m/s] of the formation
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(3000)]
@@ -20,33 +16,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(3000)]
 @pytest.fixture(scope="module")
 def example() -> ModuleType:
     """examples/modem.py, which flies and draws them."""
-    spec = util.spec_from_file_location("modem_example", ROOT / "examples" / "modem.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-def printed(page: str, table: str) -> list[str]:
-    """The rows of a table that a comment names."""
-    text = (ROOT / "docs" / "tutorials" / page).read_text(encoding="utf-8")
-    return text.partition(f"<!-- table: {table} -->\n")[2].partition("\n\n")[0].splitlines()[2:]
-
-
-def same_numbers(rows: list[str], wanted: list[str]) -> bool:
-    """Whether two tables say the same, but for one in the last digit."""
-    if len(rows) != len(wanted):
-        return False
-    for row, other in zip(rows, wanted, strict=True):
-        ours, theirs = (re.findall(r"\d+(?:\.\d+)?", line) for line in (row, other))
-        digits = [10.0 ** -len(number.partition(".")[2]) for number in theirs]
-        if [re.sub(r"\d+(?:\.\d+)?", "", line) for line in (row, other)].count(re.sub(r"\d+(?:\.\d+)?", "", row)) != 2:
-            return False
-        if np.any(np.abs(np.array(ours, float) - np.array(theirs, float)) > 1.01 * np.array(digits)):
-            return False
-    return True
+    return example_of("modem")
 
 
 @pytest.mark.parametrize("case", ["as in the file", "GNSS errors slow", "a current from anywhere"])
@@ -77,6 +47,6 @@ def test_a_silence_is_bounded_by_the_filter_s_own_covariance(example: ModuleType
 def test_the_page_prints_what_they_give(example: ModuleType) -> None:
     page = "through-a-modem.md"
     wanted = example.lines_of(list(example.CASES), example.s2c_rows(), example.S2C_FORMATS)
-    assert same_numbers(printed(page, "s2c"), wanted), wanted
+    assert not differences(printed(page, "s2c"), wanted)
     wanted = example.lines_of(example.span_names(), example.silence_rows(), example.SILENCE_FORMATS)
-    assert same_numbers(printed(page, "silences"), wanted), wanted
+    assert not differences(printed(page, "silences"), wanted)

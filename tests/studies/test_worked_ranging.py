@@ -1,17 +1,13 @@
 """The worked mission by ranges, flown 60 times in each way: its thresholds, and what its page prints."""
 
-import sys
-from importlib import util
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 
 from cardume.studies.statistics import paired_difference
+from studies.worked import differences, example_of, printed
 
-ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "tutorials" / "by-range.md"
 BEST, CIRCLE, ZIGZAG, MOWER, LINE, BEARINGS = range(6)  # arms of the example
 LATE, SHORTER, LONGER, FAST = range(4)  # columns of what becomes of an arm
 
@@ -21,13 +17,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(3000)]
 @pytest.fixture(scope="module")
 def example() -> ModuleType:
     """examples/ranging.py, which flies and draws it."""
-    spec = util.spec_from_file_location("ranging_example", ROOT / "examples" / "ranging.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+    return example_of("ranging")
 
 
 @pytest.fixture(scope="module")
@@ -63,5 +53,4 @@ def test_a_rigid_formation_is_observed_in_bends_and_not_on_a_line(found: list[np
 
 
 def test_the_page_prints_what_they_give(example: ModuleType) -> None:
-    text = PAGE.read_text(encoding="utf-8").partition("<!-- table: by-range -->\n")[2].partition("\n\n")[0]
-    assert text.splitlines()[2:] == example.table_rows()
+    assert not differences(printed("by-range.md", "by-range"), example.table_rows())

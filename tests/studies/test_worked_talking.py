@@ -1,15 +1,11 @@
 """The ways to talk of docs/tutorials/talk-by-events.md, flown 200 times each: thresholds, and what the page prints."""
 
-import sys
-from importlib import util
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "tutorials" / "talk-by-events.md"
+from studies.worked import differences, example_of, printed
 
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(3000)]
 
@@ -17,13 +13,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(3000)]
 @pytest.fixture(scope="module")
 def example() -> ModuleType:
     """examples/talking.py, which flies and draws them."""
-    spec = util.spec_from_file_location("talking_example", ROOT / "examples" / "talking.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
+    return example_of("talking")
 
 
 def test_a_tenth_of_the_messages_costs_less_than_a_tenth_of_the_error(example: ModuleType) -> None:
@@ -44,5 +34,4 @@ def test_at_any_traffic_the_mixture_costs_least(example: ModuleType) -> None:
 
 
 def test_the_page_prints_what_they_give(example: ModuleType) -> None:
-    text = PAGE.read_text(encoding="utf-8").partition("<!-- table: talking -->\n")[2].partition("\n\n")[0]
-    assert text.splitlines()[2:] == example.table_rows()
+    assert not differences(printed("talk-by-events.md", "talking"), example.table_rows())
