@@ -184,3 +184,26 @@ def test_no_garbage_gives_anything_but_an_error_of_ours(tmp_path: Path) -> None:
             continue
     assert len(said) > 20
     assert all(str(path) in text for text in said)
+
+
+def test_vehicles_of_one_table_share_their_time(tmp_path: Path) -> None:
+    path = tmp_path / "two.csv"
+    rows = ["time,vehicle,surge,heading_deg,fix_north,fix_east"]
+    rows += [f"{1000 + k},late,0.5,0,{k},0" for k in range(5, 9)] + [f"{1000 + k},early,0.5,0,{k},0" for k in range(9)]
+    path.write_text("\n".join(rows) + "\n")
+    found = replay(Request(path=path, position={"law": "direct"}))
+    assert found.began == "at 1000.000 s"
+    late = found.parts[0].believed
+    assert late.name == "late"
+    first = int(np.flatnonzero(np.isfinite(late.fixes[:, 0]))[0])
+    assert late.times[first] == pytest.approx(5.0)
+
+
+def test_a_range_filter_starts_where_the_truth_does(tmp_path: Path) -> None:
+    path = tmp_path / "ranges.csv"
+    rows = ["time,heading_deg,surge,range,source_north,source_east,truth_north,truth_east"]
+    rows += [f"{k},90,0.5,{math.hypot(30.0, 0.5 * k)!r},30,0,0,{0.5 * k}" for k in range(40)]
+    path.write_text("\n".join(rows) + "\n")
+    (part,) = replay(Request(path=path, position={"law": "range_filter", "range_scale": "0"})).parts
+    assert part.score.fixes == 40
+    assert part.score.position_error_rms < 0.5

@@ -240,6 +240,8 @@ def _with_start(vehicle: Recorded, request: Request) -> Recorded:
 
 def _part_by_ranges(vehicle: Recorded, request: Request) -> Part:
     given = {key: value for key, value in (request.position or {}).items() if key != "law"}
+    if request.start != "unknown":
+        vehicle = replace(vehicle, start=_start_of(vehicle))
     believed, innovations, found = play_ranges(vehicle, doubt_of(given), request.tick, request.start != "unknown")
     return Part(
         believed=believed,
@@ -277,7 +279,8 @@ def _start_of(vehicle: Recorded) -> tuple[float, float]:
     if vehicle.truth.is_there:
         north, east = vehicle.truth.values[0, :2]
         return float(north), float(east)
-    raise InputError(f"{printable(vehicle.name)}: nothing says where it starts; give --start NORTH,EAST in meters")
+    name = printable(vehicle.name)
+    raise InputError(f"{name}: nothing says where it starts; give --start NORTH,EAST in meters; of ranges, or unknown")
 
 
 def _lacks(vehicle: Recorded) -> list[str]:

@@ -76,11 +76,12 @@ def read(path: Path, options: Options) -> Recording:
             raise DataError(f"{name}:{line}: has {len(row)} values, the header {len(header)} columns")
         words = dict(zip(header, (word.strip() for word in row), strict=True))
         vehicles.setdefault(words.get("vehicle") or "vehicle", []).append((line, words))
-    origin = _origin(vehicles, name)
+    origin, zero = _origin(vehicles, name), _first_time(vehicles, name)
     return Recording(
         kind="csv",
-        vehicles=tuple(_vehicle(who, rows_of, name, origin, options) for who, rows_of in vehicles.items()),
+        vehicles=tuple(_vehicle(who, rows_of, name, zero, origin, options) for who, rows_of in vehicles.items()),
         origin=origin,
+        began=f"at {zero:.3f} s" if zero else "",
         notes=tuple(notes),
     )
 
@@ -120,12 +121,21 @@ def _origin(vehicles: dict[str, list[tuple[int, dict[str, str]]]], name: str) ->
     return None
 
 
+def _first_time(vehicles: dict[str, list[tuple[int, dict[str, str]]]], name: str) -> float:
+    """[s] the earliest time of the table, which becomes 0."""
+    return min(_number(words, "time", f"{name}:{line}") for rows in vehicles.values() for line, words in rows)
+
+
 def _vehicle(
-    who: str, rows: Sequence[tuple[int, dict[str, str]]], name: str, origin: GeoPoint | None, options: Options
+    who: str,
+    rows: Sequence[tuple[int, dict[str, str]]],
+    name: str,
+    zero: float,
+    origin: GeoPoint | None,
+    options: Options,
 ) -> Recorded:
     streams: dict[str, list[tuple[float, ...]]] = {key: [] for key in ("attitude", "velocity", "depth", "truth")}
     sighted: list[Sighted] = []
-    zero = min(_number(words, "time", f"{name}:{line}") for line, words in rows)
     before = -math.inf
     for line, words in rows:
         place = f"{name}:{line}"
