@@ -12,8 +12,9 @@ from rosbags.typesys import Stores, get_typestore
 from cardume.errors import DataError, InputError
 from cardume.missions.exports.ros import mcap_of
 from cardume.missions.geodesy import GeoPoint, to_geographic
+from cardume.missions.recordings.asking import Request, read_start
 from cardume.missions.recordings.base import Options
-from cardume.missions.recordings.replaying import Request, read_start, replay
+from cardume.missions.recordings.replaying import replay
 from recordings.flown import apart, surface
 
 ROLES = (("fix", "/fix"), ("heading", "/imu"), ("velocity", "/dvl"), ("truth", "/truth"))

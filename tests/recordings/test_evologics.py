@@ -9,8 +9,9 @@ import pytest
 
 from cardume.errors import DataError, InputError
 from cardume.missions.recordings import evologics
+from cardume.missions.recordings.asking import Request
 from cardume.missions.recordings.base import Options
-from cardume.missions.recordings.replaying import Request, replay
+from cardume.missions.recordings.replaying import replay
 
 FAILED = (
     "+++AT:114:USBLLONG,10446.991981,10446.534643,3,-0.0604,-1.0888,-0.5851,-0.4233,-1.0020,-0.5901,"

@@ -8,8 +8,9 @@ import pytest
 
 from cardume.errors import DataError, InputError
 from cardume.missions.recordings import log as flights
+from cardume.missions.recordings.asking import Request
 from cardume.missions.recordings.playing import play
-from cardume.missions.recordings.replaying import Request, replay
+from cardume.missions.recordings.replaying import replay
 from recordings.flown import OVERRIDES, fly_to
 
 FAULTS = """faults=[

@@ -12,8 +12,9 @@ import pytest
 from cardume.errors import DataError, InputError
 from cardume.missions.geodesy import GeoPoint, geographic_to_utm, to_geographic, to_local
 from cardume.missions.recordings import nmea
+from cardume.missions.recordings.asking import Request
 from cardume.missions.recordings.base import Options
-from cardume.missions.recordings.replaying import Request, replay
+from cardume.missions.recordings.replaying import replay
 from recordings.flown import surface
 
 GGA = "$GPGGA,220932.45,2207.733438,N,16242.262661,W,2,09,1.1,7.25,M,4.62,M,1.2,0001*6A"

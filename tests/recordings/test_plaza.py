@@ -9,8 +9,9 @@ from scipy.io import savemat
 
 from cardume.errors import DataError
 from cardume.missions.recordings import plaza
+from cardume.missions.recordings.asking import Request
 from cardume.missions.recordings.base import Options
-from cardume.missions.recordings.replaying import Request, replay
+from cardume.missions.recordings.replaying import replay
 
 FOUND = importlib.util.find_spec("gtsam")
 DATA = Path(FOUND.origin).parent / "Data" if FOUND and FOUND.origin else Path("nowhere")

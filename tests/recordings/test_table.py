@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from cardume.errors import DataError, InputError
-from cardume.missions.recordings.replaying import Request, read_start, replay
+from cardume.missions.recordings.asking import Request, read_start
+from cardume.missions.recordings.replaying import replay
 from cardume.signals import Fix
 from recordings.flown import apart, surface
 

@@ -27,7 +27,8 @@ from cardume.cli.text import filled
 from cardume.cli.version import version
 
 if TYPE_CHECKING:
-    from cardume.missions.recordings.replaying import Replay, Request
+    from cardume.missions.recordings.asking import Request
+    from cardume.missions.recordings.replaying import Replay
 
 DONE = 0
 KINDS = ("log", "nmea", "evologics", "plaza", "bag", "csv")
@@ -115,8 +116,9 @@ def replay(**given: Any) -> int:
       cardume replay boat.nmea --vehicle ship
       cardume replay dive.mcap --topic fix=/usbl --topic heading=/imu --topic velocity=/dvl
     """
+    from cardume.missions.recordings.asking import name_of
     from cardume.missions.recordings.keeping import keep
-    from cardume.missions.recordings.replaying import name_of, replay as play
+    from cardume.missions.recordings.replaying import replay as play
     from cardume.missions.results import choose_destination
     from cardume.report.replay_figure import save_replay
 
@@ -135,8 +137,8 @@ def replay(**given: Any) -> int:
 
 
 def _request(asked: Asked, given: dict[str, Any]) -> "Request":
+    from cardume.missions.recordings.asking import Request, read_position, read_start
     from cardume.missions.recordings.base import Options
-    from cardume.missions.recordings.replaying import Request, read_position, read_start
 
     topics = []
     for text in given["topics"]:

@@ -1,63 +1,29 @@
 """Replay a recording: read it, let each vehicle navigate through it, and hold that against the truth."""
 
 import math
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from cardume.errors import InputError
-from cardume.laws import laws_of
 from cardume.missions.geodesy import GeoPoint
 from cardume.missions.log import Log
 from cardume.missions.mission import Mission
 from cardume.missions.recordings import log as flights
-from cardume.missions.recordings.base import Options, Recorded, check_length
+from cardume.missions.recordings.asking import Request, check_law, name_of
+from cardume.missions.recordings.base import Recorded, check_length
 from cardume.missions.recordings.by_ranges import LAW, doubt_of, play_ranges
 from cardume.missions.recordings.later import Smoothed, look_back
 from cardume.missions.recordings.meeting import Met, draft, meet
 from cardume.missions.recordings.playing import Believed, Innovation, Score, innovations_of, play, score
 from cardume.missions.recordings.reading import LOG, kind_of, read_recording
 from cardume.missions.wording import unknown
-from cardume.units import parse_quantity, printable
+from cardume.units import printable
 
 Progress = Callable[[str, int, int], None]
-TICK = 0.1  # [s]
 USUAL = "kalman_replay"
 MOST_TICKS = 1_000_000
-
-
-@dataclass(frozen=True, kw_only=True)
-class Request:
-    """What is to be replayed, and how.
-
-    Attributes:
-        path: of the recording.
-        kind: its format; empty: by its contents.
-        vehicles: only these; none: all.
-        position: the position law's name under "law", and its parameters; empty: the flight's own, or a usual one.
-        current_observer: the same of the current.
-        overrides: of the mission beside these, as `--set` gives them.
-        start: [m] north and east, "unknown", or None: what the recording says.
-        tick: [s] of a recording that is no flight.
-        options: what a person says of the recording.
-        looks_back: whether to smooth as well.
-        allow_code: folders from which laws may be imported.
-    """
-
-    path: Path
-    kind: str = ""
-    vehicles: tuple[str, ...] = ()
-    position: Mapping[str, str] | None = None
-    current_observer: Mapping[str, str] | None = None
-    overrides: tuple[str, ...] = ()
-    start: tuple[float, float] | str | None = None
-    tick: float = TICK
-    options: Options = Options()
-    looks_back: bool = False
-    allow_code: tuple[str | Path, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,31 +85,9 @@ def replay(request: Request, progress: Progress = lambda stage, done, total: Non
         InputError: a recording that cannot be read, laws that do not exist, or no start where one is needed.
     """
     for family, given in (("position", request.position), ("current_observer", request.current_observer)):
-        _look(family, given or {})
+        check_law(family, given or {})
     kind = request.kind or kind_of(request.path)
     return _replay_log(request, progress) if kind == LOG else _replay_recording(request, kind)
-
-
-def _look(family: str, given: Mapping[str, str]) -> None:
-    """Refuse the name of a law that there is not, in the words of its option."""
-    names = [*laws_of(family), *((LAW,) if family == "position" else ())]
-    name = given.get("law", names[0])
-    if name not in names and ":" not in name:
-        option = f"--{family.replace('_', '-')}"
-        raise InputError(f"{option} law={printable(name)}: {unknown('no such law', name, names)}, or module:function")
-
-
-def name_of(path: Path) -> str:
-    """A name for the results of a recording, safe as that of a folder.
-
-    Args:
-        path: of the recording.
-    """
-    stem = path.absolute().parent.name if path.name == "log.nc" else path.stem
-    if stem.isdigit():
-        stem = f"{path.absolute().parents[1 if path.name == 'log.nc' else 0].name}-{stem}"
-    plain = re.sub(r"[^A-Za-z0-9]+", "-", stem).strip("-").lower()[:40] or "recording"
-    return f"replay-{plain}"
 
 
 def _settings(key: str, given: Mapping[str, str] | None) -> list[str]:
@@ -292,48 +236,6 @@ def _lacks(vehicle: Recorded) -> list[str]:
             " current"
         ]
     return []
-
-
-def read_position(text: str, option: str) -> dict[str, str]:
-    """`law=direct` or `law=kalman_replay,gate=9` as a dictionary; a lone word is the law.
-
-    Args:
-        text: what was given.
-        option: with which.
-
-    Raises:
-        InputError: it is something else.
-    """
-    found: dict[str, str] = {}
-    for part in text.split(","):
-        key, equals, value = (word.strip() for word in part.partition("="))
-        key, value = (key, value) if equals else ("law", key)
-        if not key or not value or key in found:
-            raise InputError(
-                f"{option} '{printable(text)}' cannot be read; write {option} law=NAME,PARAMETER=VALUE,..."
-            )
-        found[key] = value
-    return found
-
-
-def read_start(text: str) -> tuple[float, float] | str:
-    """`NORTH,EAST` in meters, or `unknown`.
-
-    Args:
-        text: what was given.
-
-    Raises:
-        InputError: it is something else.
-    """
-    if text.strip() == "unknown":
-        return "unknown"
-    parts = text.split(",")
-    if len(parts) != 2:
-        raise InputError(
-            f"--start '{printable(text)}' cannot be read; write NORTH,EAST in meters, as --start 12,-3, or unknown"
-        )
-    north, east = (parse_quantity(part.strip(), "m") for part in parts)
-    return north, east
 
 
 def errors_of(believed: Believed) -> np.ndarray:
