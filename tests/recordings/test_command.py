@@ -142,3 +142,13 @@ def test_what_cannot_be_done_is_said(cardume, tmp_path: Path, arguments: list[st
 
 def test_the_formats_are_the_same_everywhere() -> None:
     assert command.KINDS == KINDS == tuple(MEANINGS)
+
+
+def test_a_scale_that_was_found_is_shown_and_a_bias_that_was_not_sought_is_not(cardume, tmp_path: Path) -> None:
+    rows = ["time,heading_deg,surge,range,source_north,source_east,truth_north,truth_east"]
+    rows += [f"{k},90,0.5,{1.05 * math.hypot(30.0, 0.5 * k)!r},30,0,0,{0.5 * k}" for k in range(80)]
+    (tmp_path / "ranges.csv").write_text("\n".join(rows) + "\n")
+    code, said, _ = cardume("replay", "ranges.csv", "--no-figures", "--position", "law=range_filter")
+    assert code == 0
+    assert "range scale" in said
+    assert "range bias" not in said

@@ -198,9 +198,12 @@ def table_of(found: "Replay", width: int) -> str:
     names = ["vehicle", *(part.believed.name for part in found.parts)]
     laws = ["law", *(part.position for part in found.parts)]
     known: dict[float, list[str]] = {column.rank: cells for column in COLUMNS if (cells := _cells(column, found))}
-    extra = sorted({key for part in found.parts for key in part.found or {}})
+    extra = sorted({key for part in found.parts for key, value in (part.found or {}).items() if value})
     known |= {
-        20 + k: [key.replace("_", " "), *(f"{(part.found or {}).get(key, math.nan):.4f}" for part in found.parts)]
+        4.5 + 0.1 * k: [
+            key.replace("_", " "),
+            *(f"{(part.found or {}).get(key, math.nan):.4f}" for part in found.parts),
+        ]
         for k, key in enumerate(extra)
     }
     if any(part.smoothed for part in found.parts):
