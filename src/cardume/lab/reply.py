@@ -33,12 +33,10 @@ def flown(run: Run) -> dict[str, Any]:
         "colors": [color(k) for k in range(len(flight.vehicle_names))],
         **lines(flight),
         "verdict": [word, kind],
-        "failure": flight.failure or "",
         "meaning": meaning(flight, run, run.verdicts),
         "required": [required(verdict) for verdict in run.verdicts],
         "numbers": numbers(flight),
         "milliseconds": _plain(1e3 * flight.wall_seconds),
-        "flown": flight.flown,
     }
 
 

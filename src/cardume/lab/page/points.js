@@ -81,7 +81,6 @@ export const makePoints = ({ plan, handles, changed }) => {
     place,
     isShown: () => isShown,
     isDrawing: () => isDrawing,
-    count: () => points.length,
   };
 };
 export const asList = (points) => `[${points.map(([north, east]) => `{north: ${north} m, east: ${east} m}`).join(", ")}]`;
