@@ -7,7 +7,9 @@ import pytest
 
 from cardume.errors import MissionError
 from cardume.missions.available import catalog
+from cardume.missions.geodesy import GeoPoint
 from cardume.missions.loading import parse_mission
+from cardume.missions.mission_path import plan_of_mission
 from cardume.missions.planning import make_plan
 from cardume.missions.ranging.choosing import Knowledge, most_telling
 from cardume.missions.ranging.information import log_determinants_along, mission_information
@@ -142,3 +144,9 @@ def test_none_is_no_maneuver_and_a_saved_one_reads_back() -> None:
     assert again == mission
     without = paths_of(f"{MANEUVER}=none")["above"]
     assert without[table.LENGTH_OWN] == pytest.approx(without[table.LENGTH_REFERENCE])
+
+
+def test_a_path_file_says_that_it_has_no_maneuver() -> None:
+    plan, names, lost = plan_of_mission(parse_mission(TEXT, catalog([])), "about", GeoPoint(0.0, 0.0))
+    assert plan.members[names.index("above")].starboard == 0.0
+    assert any("above's maneuver" in what for what in lost)

@@ -44,6 +44,7 @@ def plan_of_mission(opened: Mission, source: str, origin: GeoPoint | None) -> tu
     segments = tuple(segment for segment in segments if not segment.beyond)
     plan = Plan(source=source, origin=origin, segments=segments, members=_members(mission), name=mission.name)
     lost += [f"the profile of {key}: {kept} is kept" for key, kept in _profiles(mission)]
+    lost += [f"{v.name}'s maneuver: it gets the formation's own path" for v in mission.vehicles if v.maneuver]
     mean = table_speed(mission, sum(segment.length for segment in plan.segments))
     plan = with_speed(plan, None if math.isnan(mean) else mean)
     return _whole_laps(plan, mission, lost), [vehicle.name for vehicle in mission.vehicles], lost
