@@ -25,14 +25,14 @@ KEYS = {
 }
 
 
-@click.command("list", short_help="List laws, missions, metrics, paths, formats.")
-@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|paths|formats|recordings|MODULE:LAW]")
+@click.command("list", short_help="List laws, missions, metrics, paths, faults, formats.")
+@click.argument("what", required=False, metavar="[FAMILY|missions|metrics|paths|faults|formats|recordings|MODULE:LAW]")
 @allow_code_option
 @quiet_option
 @json_option
 def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: bool) -> int:
-    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, the types of paths, the
-    formats of path files and of what is made of a run, or those of recordings.
+    """List the families of laws, the laws of FAMILY, the built-in missions, the metrics, the types of paths, the kinds
+    of faults, the formats of path files and of what is made of a run, or those of recordings.
 
     A law of yours is shown by its name in a mission, as my_laws:my_law, its folder given by --allow-code.
     """
@@ -48,6 +48,8 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         found = _recordings()
     elif what == "paths":
         found = _paths()
+    elif what == "faults":
+        found = _faults()
     elif ":" in what:
         found = _users_law(what, allow_code)
     else:
@@ -61,7 +63,9 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
         for entry in found:
             _say(entry)
         if what is None:
-            click.echo("\ncardume list FAMILY, list missions, list metrics, list paths, list formats say more.")
+            click.echo(
+                "\ncardume list FAMILY, list missions, list metrics, list paths, list faults, list formats say more."
+            )
     return 0
 
 
@@ -94,7 +98,7 @@ def _about(family: str, law: Any) -> str:
 def _laws(family: str) -> list[dict[str, Any]]:
     families = _every_law()
     if family not in families:
-        names = [*families, "missions", "metrics", "paths", "formats", "recordings"]
+        names = [*families, "missions", "metrics", "paths", "faults", "formats", "recordings"]
         hint = nearest(family, names) or "."
         raise click.UsageError(f"There is no family '{family}'{hint} There are {', '.join(names)}")
     return [_describe(law) for law in families[family].values()]
@@ -130,28 +134,34 @@ def _metrics() -> list[dict[str, Any]]:
 
 
 def _paths() -> list[dict[str, Any]]:
+    from cardume.missions.route import PATHS
+
+    return [_section(name, record) for name, record in PATHS.items()]
+
+
+def _faults() -> list[dict[str, Any]]:
+    from cardume.missions.faults import FAULTS, REACTIONS
+
+    return [_section(name, record) | {"reaction": REACTIONS[name]} for name, record in FAULTS.items()]
+
+
+def _section(name: str, record: type) -> dict[str, Any]:
+    """A record of the mission file with its keys."""
     from dataclasses import MISSING
 
-    from cardume.missions.route import PATHS
     from cardume.missions.schema import fields_of
     from cardume.missions.wording import wanted
 
-    return [
+    keys = [
         {
-            "name": name,
-            "summary": (record.__doc__ or "").strip().partition("\n")[0],
-            "keys": [
-                {
-                    "name": field.key,
-                    "meaning": field.doc,
-                    "valid": wanted(field.kind),
-                    "needed": field.default is MISSING and field.written is None,
-                }
-                for field in fields_of(record)
-            ],
+            "name": field.key,
+            "meaning": field.doc,
+            "valid": wanted(field.kind),
+            "needed": field.default is MISSING and field.written is None,
         }
-        for name, record in PATHS.items()
+        for field in fields_of(record)
     ]
+    return {"name": name, "summary": (record.__doc__ or "").strip().partition("\n")[0], "keys": keys}
 
 
 def _formats() -> list[dict[str, Any]]:
@@ -186,6 +196,8 @@ def _say(entry: Mapping[str, Any]) -> None:
     for key in entry.get("keys", ()):
         must = "" if key["needed"] else " (may be left out)"
         click.echo(_indented(f"{key['name']}: {key['meaning']}; {key['valid']}{must}", width))
+    if entry.get("reaction"):
+        click.echo(_indented(f"then: {entry['reaction']}", width))
     if "key" in entry and "laws" not in entry:
         click.echo(_indented(f"chosen under the key {entry['key']}", width))
     if entry.get("source"):

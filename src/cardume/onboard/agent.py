@@ -25,7 +25,7 @@ from cardume.onboard.pace import keep_pace
 from cardume.onboard.phases import HOLD_GAIN, HOLD_RADIUS, change_phase, wait_or_go
 from cardume.onboard.screening import screen, stop_if_lost
 from cardume.onboard.sightings import look_around
-from cardume.onboard.silence import yield_to_silence
+from cardume.onboard.silence import hold_place, yield_to_silence
 from cardume.onboard.telling import Said, report
 from cardume.paths.projection import point_at
 from cardume.paths.table import LENGTH_OWN
@@ -66,9 +66,9 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
     look_around(mind, measured, position, motion, error, time)
     others = predict_neighbors(mind, heard, error, time)
     change_phase(mind, measured, heard, error, time)
-    along = yield_to_silence(mind, progress(mind, error, coordinate(mind, others)), time)
+    along = yield_to_silence(mind, progress(mind, error, coordinate(mind, others)), error, time)
     demand = guide(mind, error, motion, along)
-    demand, along = wait_or_go(mind, demand, along, error)
+    demand, along = hold_place(mind, *wait_or_go(mind, demand, along, error), error)
     depth = choose_depth(mind, measured, error, time)
     reference = stop_if_lost(mind, compensate(mind, demand, along, depth, motion))
     return reference, report(mind, heard, time)

@@ -204,9 +204,10 @@ class LastSeen(NamedTuple):
 
 
 class Told(NamedTuple):
-    """Of when the fix is that another vehicle told last and that was used."""
+    """Which fix that another vehicle told was used last."""
 
     time_of_fix: float = LONG_AGO  # [s]
+    north: float = NOTHING  # [m]
 
 
 class Trusted(NamedTuple):
@@ -255,6 +256,14 @@ class Watches(NamedTuple):
     north: float = NOTHING  # [m]
     north_same: float = 0.0  # [s]
     north_doubted: float = NOTHING  # [s]
+
+
+class Stop(NamedTuple):
+    """Where it holds its place for the sake of one who is silent."""
+
+    holds: float = 0.0  # [-] 1: it does
+    north: float = NOTHING  # [m]
+    east: float = NOTHING  # [m]
 
 
 class Way(NamedTuple):
@@ -313,6 +322,7 @@ OWN = Layout(
     Asked,
     Watches,
     Way,
+    Stop,
 )
 get_setup, put_setup = OWN.reader(Setup), OWN.writer(Setup)
 get_datasheet = OWN.reader(Datasheet)
@@ -329,6 +339,7 @@ get_sounding, put_sounding = OWN.reader(Sounding), OWN.writer(Sounding)
 get_trusted, put_trusted = OWN.reader(Trusted), OWN.writer(Trusted)
 get_asked, put_asked = OWN.reader(Asked), OWN.writer(Asked)
 get_way, put_way = OWN.reader(Way), OWN.writer(Way)
+get_stop, put_stop = OWN.reader(Stop), OWN.writer(Stop)
 WATCH = Layout(Watch)
 get_watch, put_watch = WATCH.reader(Watch), WATCH.writer(Watch)
 

@@ -148,6 +148,8 @@ def newest_fix(mind: Mind, heard: Rows, time: float) -> Fix:
 def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, depth: float, time: float) -> Fix:
     """A fix of this vehicle, or only a range, that somebody told and that was not used yet; of several one in a tick.
 
+    One that comes and is older than the last is used too: the last may have been of a clock that was wrong, or forged.
+
     Args:
         mind: of the vehicle.
         heard: (sources, message) its inbox, with what each said last.
@@ -159,13 +161,14 @@ def unused_fix(mind: Mind, heard: Rows, by_gnss: bool, depth: float, time: float
     for source in range(load(mind.sources, 0)):
         sender, message = load(mind.sources, source + 1), message_from(heard, mind.size, source)
         seen = sighting_in(message, mind.me)
-        used = get_told(mind.others, sender).time_of_fix
+        used = get_told(mind.others, sender)
         free = negate(by_gnss | (fix.north == fix.north))
-        was_set_back = is_fresh(message) & (used > time + SAME)
-        is_unused = free & ((seen.time_of_fix > used + SAME) | was_set_back)
+        is_other = (seen.time_of_fix < used.time_of_fix - SAME) | (seen.north != used.north)
+        comes = is_fresh(message) & (seen.time_of_fix == seen.time_of_fix)
+        is_unused = free & ((seen.time_of_fix > used.time_of_fix + SAME) | (comes & is_other))
         if some(is_unused):
             fix = where(is_unused, _fix_told(seen, depth, time), fix)
-            put_told(mind.others, sender, Told(where(is_unused, seen.time_of_fix, used)))
+            put_told(mind.others, sender, where(is_unused, Told(seen.time_of_fix, seen.north), used))
     return fix
 
 

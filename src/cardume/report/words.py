@@ -9,8 +9,9 @@ import numpy as np
 from cardume.missions.mission import Transient
 from cardume.missions.summary import Verdict, is_met
 from cardume.report.table import number, share_heard
-from cardume.simulation.flight import Flight
+from cardume.simulation.flight import DOUBTS, FAULT, Event, Flight
 
+MOST_FAULTS = 6  # that are told one by one
 NOTICEABLE = 0.05  # [m] of cross-track error below which its cause is not worth a sentence
 
 
@@ -36,6 +37,7 @@ def meaning(flight: Flight, mission: Planned, verdicts: Sequence[Verdict]) -> st
     """
     parts = (
         _ending(flight, mission),
+        *_gone_wrong(flight),
         *_given_up(flight),
         *_keeping(flight, mission),
         *_together(flight),
@@ -88,6 +90,23 @@ def _ending(flight: Flight, mission: Planned) -> str:
         return f"Interrupted at {flight.flown:g} s of {whole}; all below is about the part that was flown."
     wall = f", in {_duration(flight.wall_seconds)} of computing" if math.isfinite(flight.wall_seconds) else ""
     return f"Flew {whole}{wall}."
+
+
+def _gone_wrong(flight: Flight) -> Iterator[str]:
+    """What was scheduled to go wrong, and what the vehicles found of it."""
+    faults = [event for event in flight.events if event.what.startswith(FAULT)]
+    shown = [f"{f'{event.vehicle}: ' if event.vehicle else ''}{_happened(event)}" for event in faults[:MOST_FAULTS]]
+    if len(faults) > MOST_FAULTS:
+        shown.append(f"and {len(faults) - MOST_FAULTS} more, among the events of the summary")
+    if shown:
+        yield f"As scheduled, {'; '.join(shown)}."
+    for event in flight.events:
+        if event.what.startswith(DOUBTS):
+            yield f"From {event.time:g} s {event.vehicle} did not believe{event.what.removeprefix(DOUBTS)}."
+
+
+def _happened(event: Event) -> str:
+    return f"{event.what.removeprefix(FAULT)} (at {event.time:g} s)"
 
 
 def _given_up(flight: Flight) -> Iterator[str]:

@@ -8,13 +8,12 @@ from cardume.onboard.mind import OWN, WATCH, Journal, Watch, Watches
 from cardume.onboard.phases import PHASES, REASONS
 from cardume.onboard.screening import WATCHED
 from cardume.simulation.fleet import FAULTS
-from cardume.simulation.flight import Event, Limit
+from cardume.simulation.flight import DOUBTS, FAULT, Event, Limit
 from cardume.simulation.fly import Flown
 from cardume.simulation.plan import FaultPlan
 from cardume.simulation.results import limits_of, separation_of
 from cardume.world.faults import FORGED, REPLAYED, Kept
 
-FAULT = "fault: "  # how the event of a fault begins
 DEVICES = {  # of what readings the vehicle says that it does not believe them; no echo of the seabed is no fault
     "heading": "AHRS",
     "depth": "depth sensor",
@@ -87,7 +86,7 @@ def _doubted(mind: np.ndarray) -> list[tuple[float, str]]:
     watches = mind[start : start + len(Watches._fields)].reshape(-1, WATCH.width)
     doubted = WATCH.column(Watch, "doubted")
     return [
-        (float(watch[doubted]), f"does not believe its {DEVICES[name]}")
+        (float(watch[doubted]), f"{DOUBTS} its {DEVICES[name]}")
         for name, watch in zip(WATCHED, watches, strict=True)
         if name in DEVICES and math.isfinite(watch[doubted])
     ]

@@ -76,6 +76,9 @@ class Limit(NamedTuple):
     by: str | None = None  # the vehicles, where the metric is of the fleet
 
 
+FAULT, DOUBTS = "fault: ", "does not believe"  # how what an event tells begins
+
+
 class Event(NamedTuple):
     """Something that happened to a vehicle, as it saw it itself or, of a limit, as it truly was."""
 

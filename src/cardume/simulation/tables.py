@@ -26,6 +26,7 @@ from cardume.onboard.mind import (
     Progress,
     Sounding,
     Speech,
+    Stop,
     Told,
     Trusted,
     Watches,
@@ -250,7 +251,7 @@ def _first_phase(vehicle: VehiclePlan) -> Progress:
 
 def _unwritten(vehicle: VehiclePlan) -> tuple[Any, ...]:
     begun = PHASES[round(_first_phase(vehicle).phase)]
-    return Journal(**{begun: 0.0}), Sounding(), vehicle.grid or Grid(), Trusted(), Asked(), Watches(), Way()
+    return Journal(**{begun: 0.0}), Sounding(), vehicle.grid or Grid(), Trusted(), Asked(), Watches(), Way(), Stop()
 
 
 def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:

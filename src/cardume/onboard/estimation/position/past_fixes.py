@@ -4,7 +4,7 @@ A fix that comes late is put where it belongs, and what was believed from there 
 with all later ones.  So the order in which fixes arrive makes no difference.
 """
 
-from cardume.compiler import Layout, Rows, compiled, some, where
+from cardume.compiler import Layout, Rows, compiled, negate, some, where
 from cardume.onboard.estimation.position.belief import (
     Belief,
     Covariance,
@@ -18,6 +18,7 @@ from cardume.onboard.estimation.position.belief import (
 from cardume.signals import Fix
 
 KEPT = 8  # fixes that a late one can be put among or before
+HALF = 0.5  # [-] of a tick
 
 SLOT = Layout(Moment, Mean, Covariance, Fix)
 get_moment, put_moment = SLOT.reader(Moment), SLOT.writer(Moment)
@@ -69,7 +70,7 @@ def _put_where(fixes: Rows, slot: int, condition: bool, belief: Belief) -> None:
 def take(fixes: Rows, fix: Fix, valid: Moment, is_known: bool, doubts: Doubts, dt: float) -> None:
     """Put a fix among the others and work out again what follows.
 
-    One that is older than all that are kept is left out.
+    One that is older than all that are kept is left out, and one that is among them already: somebody said it again.
 
     Args:
         fixes: (FIXES_WIDTH,) rows, newest first.
@@ -79,7 +80,7 @@ def take(fixes: Rows, fix: Fix, valid: Moment, is_known: bool, doubts: Doubts, d
         doubts: of the filter.
         dt: [s] one tick.
     """
-    is_taken = is_known & (valid.tick >= get_moment(fixes, KEPT - 1).tick)
+    is_taken = is_known & (valid.tick >= get_moment(fixes, KEPT - 1).tick) & negate(_is_kept(fixes, fix, valid))
     for slot in range(KEPT, 0, -1):
         moves = is_taken & (get_moment(fixes, slot - 1).tick <= valid.tick)
         if some(moves):
@@ -92,6 +93,18 @@ def take(fixes: Rows, fix: Fix, valid: Moment, is_known: bool, doubts: Doubts, d
         follows = is_taken & (newer >= slot)
         if some(follows):
             _work_out(fixes, slot, follows, newer == slot, valid, fix, doubts, dt)
+
+
+@compiled
+def _is_kept(fixes: Rows, fix: Fix, valid: Moment) -> bool:
+    """Whether a fix is among those that are kept; what stands there at first is of tick 0, and no fix."""
+    found = valid.tick < 0.0
+    for slot in range(KEPT):
+        kept, tick = get_fix(fixes, slot), get_moment(fixes, slot).tick
+        same_range = (kept.range == fix.range) | negate((kept.range == kept.range) | (fix.range == fix.range))
+        same = (kept.north == fix.north) & (kept.east == fix.east) & same_range
+        found = found | (same & (abs(tick - valid.tick) < HALF) & (tick > HALF))
+    return found
 
 
 @compiled
