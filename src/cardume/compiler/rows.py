@@ -7,6 +7,8 @@ table as `Rows`, a pointer with a stride.  `Ints` is a table of whole numbers,
 the same for all lanes.  In plain Python all of them are one-dimensional numpy arrays.
 """
 
+import functools
+import inspect
 from collections.abc import Callable
 from typing import Any
 
@@ -321,6 +323,35 @@ def as_law_sees(c: Any, b: Any, value: Any, kind: Any, wanted: Any) -> Any:
         ]
         return c.make_tuple(b, wanted, parts)
     return widened(c, b, value, kind, wanted)
+
+
+def optional(otherwise: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Decorate a compiled function that only missions with a certain table of whole numbers need.
+
+    It is then called with that table before its own arguments.  Where a table of other numbers stands in its place the
+    answer is one of the arguments as it is: the type of the table decides, so that the function is not even compiled.
+
+    Args:
+        otherwise: name of that argument.
+    """
+
+    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
+        names = list(inspect.signature(function).parameters)
+        place, given = names.index(otherwise), ", ".join(names)
+        present = eval(f"lambda table, {given}: function({given})", {"function": function})
+        absent = eval(f"lambda table, {given}: {otherwise}")
+
+        @functools.wraps(function)
+        def choose(table: Any, *arguments: Any) -> Any:
+            return function(*arguments) if table.dtype.kind == "i" else arguments[place]
+
+        @overload(choose, strict=False, jit_options=INLINED)
+        def specialized(table: Any, *arguments: Any) -> Any:
+            return present if table is INTS else absent
+
+        return choose
+
+    return decorate
 
 
 def ramp(first: float, step: float) -> Any:

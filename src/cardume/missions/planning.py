@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -81,8 +81,6 @@ def make_plan(mission: Mission, catalog: Catalog, memo: Memo = NO_MEMO) -> Plann
     )
     vehicles = scheduled(mission, [planned(v, path) for v, path in zip(mission.vehicles, paths, strict=True)])
     faults = plan_faults(mission, vehicles)
-    if faults:
-        vehicles = tuple(replace(vehicle, screens=True) for vehicle in vehicles)
     plan = Plan(
         vehicles,
         memo.recall("hears", (mission.vehicles[0].coordination,), lambda: np.asarray(mission.adjacency)),

@@ -11,8 +11,8 @@ LONG_AGO = -1e9  # [s] before any mission
 NEVER = 1e9  # [s] after any mission; [m] beyond any depth
 UNTOLD = -1.0  # [-] phase of one that has not said it: below them all
 
-# The whole numbers of `Mind.features`: what of phases.py, pace.py, depths.py, neighborhood.py, screening.py and
-# silence.py a vehicle's mission asks for.
+# The whole numbers of `Mind.features`: what of phases.py, pace.py, depths.py, neighborhood.py and silence.py a
+# vehicle's mission asks for.
 (
     ORDERS_START,
     PACE_OVER,
@@ -26,10 +26,9 @@ UNTOLD = -1.0  # [-] phase of one that has not said it: below them all
     ANSWERS,
     FORESEES,
     ROUNDS,
-    SCREENS,
     YIELDS,
     NUM_FEATURES,
-) = range(15)
+) = range(14)
 OVER_TIME, OVER_PATH = 1, 2  # values of PACE_OVER and DEPTH_OVER; 0: no profile
 
 
@@ -298,6 +297,7 @@ class Mind(NamedTuple):
     sources: Any  # Ints (list,) whose messages it reads
     me: int
     size: int  # [-] vehicles in the fleet
+    screens: Any  # Ints: it looks at its readings before it believes them; else not there
 
 
 ORDERS = Layout(Orders)

@@ -6,13 +6,11 @@ from cardume.onboard.estimation.current import observe
 from cardume.onboard.estimation.position import estimate_position
 from cardume.onboard.estimation.speed.base import read_shaft
 from cardume.onboard.mind import (
-    SCREENS,
     Along,
     Mind,
     Told,
     Whereabouts,
     get_along,
-    get_asked,
     get_current,
     get_datasheet,
     get_setup,
@@ -28,6 +26,7 @@ from cardume.onboard.mind import (
     put_whereabouts,
     sighting_in,
 )
+from cardume.onboard.screening import surge_or_asked
 from cardume.paths.base import find_reference_point
 from cardume.signals import (
     NOTHING,
@@ -55,10 +54,7 @@ def speed_through_water(mind: Mind, measured: Measured) -> DvlReading:
     has_dvl = measured.dvl_surge == measured.dvl_surge
     has_shaft = shaft == shaft
     surge = where(has_dvl, measured.dvl_surge, where(has_shaft, shaft, 0.0))
-    if load(mind.features, SCREENS) > 0:
-        told = get_datasheet(mind.own, 0)
-        carries = (told.velocity == told.velocity) | (told.shaft_speed == told.shaft_speed)
-        surge = where(carries & negate(has_dvl | has_shaft), get_asked(mind.own, 0).speed, surge)
+    surge = surge_or_asked(mind.screens, mind, surge, has_dvl | has_shaft)
     speed = DvlReading(surge, where(has_dvl, measured.dvl_sway, 0.0))
     put_speed(mind.own, 0, speed)
     return speed

@@ -9,11 +9,10 @@ Without a heading the vehicle keeps the last one, carried on by the yaw rate if 
 it takes the one it asked for; without a depth its autopilot leaves the depth as it is; without fixes it reckons.
 """
 
-from cardume.compiler import Rows, at, compiled, load, negate, where
+from cardume.compiler import Rows, at, compiled, negate, optional, where
 from cardume.maths import hypot, to_ned, wrap_angle
 from cardume.onboard.mind import (
     OWN,
-    SCREENS,
     Asked,
     Echo,
     Mind,
@@ -88,31 +87,42 @@ def screen(mind: Mind, measured: Measured, time: float) -> Measured:
     """The readings of this tick that are to be believed; the vehicle remembers what it made of them.
 
     Args:
-        mind: of the vehicle, changed in place.
+        mind: of the vehicle, changed in place; one that does not look at its readings believes them all.
         measured: what its sensors say.
         time: [s]
     """
-    if load(mind.features, SCREENS) > 0:
-        heading, yaw_rate = screen_heading(mind, measured.heading, measured.yaw_rate, time)
-        depth = screen_depth(mind, measured.depth, time)
-        surge = screen_surge(mind, measured.dvl_surge, time)
-        north = screen_position(mind, measured.gnss_north, measured.gnss_east, time)
-        measured = Measured(
-            heading,
-            yaw_rate,
-            where(is_number(measured.roll), measured.roll, 0.0),
-            where(is_number(measured.pitch), measured.pitch, 0.0),
-            depth,
-            screen_shaft(mind, measured.shaft_speed, time),
-            surge,
-            where(is_number(measured.dvl_sway), measured.dvl_sway, 0.0),
-            screen_altitude(mind, measured.altitude, time),
-            north,
-            measured.gnss_east,
-            measured.gnss_age,
-            measured.usbl,
-        )
-    return measured
+    return screened(mind.screens, mind, measured, time)
+
+
+@optional(otherwise="measured")
+@compiled
+def screened(mind: Mind, measured: Measured, time: float) -> Measured:
+    """What `screen` makes of readings where the vehicle looks at them.
+
+    Args:
+        mind: of the vehicle.
+        measured: what its sensors say.
+        time: [s]
+    """
+    heading, yaw_rate = screen_heading(mind, measured.heading, measured.yaw_rate, time)
+    depth = screen_depth(mind, measured.depth, time)
+    surge = screen_surge(mind, measured.dvl_surge, time)
+    north = screen_position(mind, measured.gnss_north, measured.gnss_east, time)
+    return Measured(
+        heading,
+        yaw_rate,
+        where(is_number(measured.roll), measured.roll, 0.0),
+        where(is_number(measured.pitch), measured.pitch, 0.0),
+        depth,
+        screen_shaft(mind, measured.shaft_speed, time),
+        surge,
+        where(is_number(measured.dvl_sway), measured.dvl_sway, 0.0),
+        screen_altitude(mind, measured.altitude, time),
+        north,
+        measured.gnss_east,
+        measured.gnss_age,
+        measured.usbl,
+    )
 
 
 @compiled
@@ -228,23 +238,56 @@ def is_believable(mind: Mind, vehicle: int, is_new: bool, distance: float, azimu
         distance: [m]
         azimuth: [rad] NaN: a range only.
     """
-    believable = is_new & is_number(distance)
-    if load(mind.features, SCREENS) > 0:
-        before = get_echo(mind.others, vehicle)
-        put_echo(mind.others, vehicle, where(is_new, Echo(distance, azimuth), before))
-        same = (distance == before.range) & ((azimuth == before.azimuth) | negate(azimuth == azimuth))
-        repeats = same & (get_datasheet(mind.own, 0).range > 0.0)
-        believable = believable & negate(repeats) & (get_trusted(mind.own, 0).knows_heading > 0.5)
-    return believable
+    return is_no_repetition(mind.screens, mind, vehicle, is_new & is_number(distance), distance, azimuth)
+
+
+@optional(otherwise="is_new")
+@compiled
+def is_no_repetition(mind: Mind, vehicle: int, is_new: bool, distance: float, azimuth: float) -> bool:
+    """What `is_believable` says where the vehicle looks at its readings.
+
+    Args:
+        mind: of the vehicle with the head.
+        vehicle: who was heard.
+        is_new: [-] whether there is a reading, in each lane.
+        distance: [m]
+        azimuth: [rad] NaN: a range only.
+    """
+    before = get_echo(mind.others, vehicle)
+    put_echo(mind.others, vehicle, where(is_new, Echo(distance, azimuth), before))
+    same = (distance == before.range) & ((azimuth == before.azimuth) | negate(azimuth == azimuth))
+    repeats = same & (get_datasheet(mind.own, 0).range > 0.0)
+    return is_new & negate(repeats) & (get_trusted(mind.own, 0).knows_heading > 0.5)
+
+
+@optional(otherwise="surge")
+@compiled
+def surge_or_asked(mind: Mind, surge: float, is_measured: bool) -> float:
+    """Surge [m/s] where it is measured; else the speed that was asked for, of a vehicle that carries a sensor of it.
+
+    Args:
+        mind: of the vehicle.
+        surge: [m/s]
+        is_measured: [-] whether it is, in each lane.
+    """
+    told = get_datasheet(mind.own, 0)
+    carries = (told.velocity == told.velocity) | (told.shaft_speed == told.shaft_speed)
+    return where(carries & negate(is_measured), get_asked(mind.own, 0).speed, surge)
 
 
 @compiled
 def stop_if_lost(mind: Mind, reference: Reference) -> Reference:
-    """The reference, or to stay where it is for a vehicle that does not know its heading; it remembers what it asks."""
-    if load(mind.features, SCREENS) > 0:
-        trusted = get_trusted(mind.own, 0)
-        knows, none = trusted.knows_heading > 0.5, NOTHING * reference.heading
-        stay = Reference(reference.course, trusted.heading, 0.0 * trusted.heading, reference.depth, none)
-        reference = where(knows, reference, stay)
-        put_asked(mind.own, 0, Asked(reference.heading, reference.speed, reference.depth))
+    """The reference, or to stay where it is for a vehicle that knows that it does not know its heading."""
+    return reference_if_lost(mind.screens, mind, reference)
+
+
+@optional(otherwise="reference")
+@compiled
+def reference_if_lost(mind: Mind, reference: Reference) -> Reference:
+    """What `stop_if_lost` gives where the vehicle looks at its readings; it remembers what it asks."""
+    trusted = get_trusted(mind.own, 0)
+    knows, none = trusted.knows_heading > 0.5, NOTHING * reference.heading
+    stay = Reference(reference.course, trusted.heading, 0.0 * trusted.heading, reference.depth, none)
+    reference = where(knows, reference, stay)
+    put_asked(mind.own, 0, Asked(reference.heading, reference.speed, reference.depth))
     return reference

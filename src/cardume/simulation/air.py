@@ -4,7 +4,7 @@ Each sender has a few slots for messages that are under way; each link (a listen
 sources) knows when the message of each slot arrives.
 """
 
-from cardume.compiler import Rows, at, compiled, load, negate, some, store, where
+from cardume.compiler import Rows, at, compiled, load, some, store, where
 from cardume.maths import hypot
 from cardume.maths.random import Key, uniforms
 from cardume.onboard.messaging.rounding import rounded_sighting
@@ -24,13 +24,12 @@ from cardume.onboard.mind import (
 from cardume.onboard.telling import Said
 from cardume.signals import NOTHING, Link, Sighting
 from cardume.simulation.contention import contend
-from cardume.simulation.faults import intrude, is_faulty, record_packet
+from cardume.simulation.faults import delivered_in_fault, intrude, record_packet, sending_in_fault
 from cardume.simulation.fleet import NEVER, Fleet, book_of, features_of, get_medium, get_vessel, sources_of
 from cardume.simulation.recording import next_row, write_message
 from cardume.simulation.score import note_heard, note_sent
 from cardume.simulation.sensing import LINK, key_of
 from cardume.world.acoustics.base import propagate
-from cardume.world.faults import SILENT
 
 
 @compiled
@@ -42,8 +41,7 @@ def arrived(fleet: Fleet, listener: int, time: float) -> Rows:
         store(at(fleet.air.inbox, link * fleet.air.messages), FLAG, 0.0)
         if some(load(fleet.air.due, link) <= time):
             collect(fleet, listener, link, load(sources, source + 1), time)
-    if fleet.faults.num > 0:
-        intrude(fleet, listener, time)
+    intrude(fleet.faults.kinds, fleet, listener, time)
     return inbox_of(fleet, listener)
 
 
@@ -92,8 +90,7 @@ def copy_if_newer(message: Rows, sent: Rows, here: bool, width: int) -> None:
 def speak(fleet: Fleet, sender: int, said: Said, time: float) -> None:
     """Put what a vehicle says in this tick, if anything, into the water."""
     sending = said.report.sending
-    if fleet.faults.num > 0:
-        sending = where(is_faulty(fleet, SILENT, sender, time), 0.0, sending)
+    sending = sending_in_fault(fleet.faults.kinds, fleet, sender, sending, time)
     sends = sending > 0.5
     store(fleet.air.sending, sender, sending)
     if some(sends):
@@ -123,8 +120,7 @@ def speak(fleet: Fleet, sender: int, said: Said, time: float) -> None:
                 seen = rounded_sighting(seen, said.report.time_of_validity, get_grid(fleet.minds, sender))
             put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
         note_sent(fleet, sender, sends)
-        if fleet.faults.num > 0:
-            record_packet(fleet, sender, message, sends, time)
+        record_packet(fleet.faults.kinds, fleet, sender, message, sends, time)
 
 
 @compiled
@@ -155,8 +151,7 @@ def transmit(fleet: Fleet, sender: int, listener: int, link: int, time: float, n
     slant = Link(hypot(level_distance, there.depth - here.depth), draw_1, draw_2, time, payload, where(sends, 1.0, 0.0))
     arrival = propagate(book_of(fleet, listener, fleet.tick), sender, slant)
     delivered = arrival.delivered > 0.5
-    if fleet.faults.num > 0:
-        delivered = delivered & negate(is_faulty(fleet, SILENT, listener, time + arrival.delay))
+    delivered = delivered_in_fault(fleet.faults.kinds, fleet, listener, delivered, time + arrival.delay)
     slot = (load(fleet.air.sent, sender) - 1) % fleet.air.slots
     arrives = where(delivered, time + arrival.delay, NEVER)
     row = link * fleet.air.slots + slot

@@ -52,7 +52,7 @@ def events_of(flown: Flown) -> tuple[Event, ...]:
         if vehicle.orders.has_phases:
             journal = Journal(*minds[row, start : start + len(Journal._fields)].tolist())
             found += [Event(round(time, 6), vehicle.name, what) for time, what in _told(journal)]
-        if vehicle.screens:
+        if plan.faults:
             found += [Event(round(time, 6), vehicle.name, what) for time, what in _doubted(minds[row])]
     found += [_began(fault, plan.tick) for fault in plan.faults if fault.says and fault.numbers.begin < plan.duration]
     found += _packets(flown)

@@ -1,16 +1,15 @@
 """Faults in a mission: where what goes wrong meets sensors, water, messages and hulls.
 
-All that is here is called only where a mission has faults: `fleet.faults.num > 0`.
+A mission without faults is flown by an engine that was compiled without them: see `optional`.
 """
 
 from typing import Any
 
-from cardume.compiler import at, compiled, floor, load, negate, some, store, where
+from cardume.compiler import Rows, at, compiled, floor, load, negate, optional, some, store, where
 from cardume.maths.random import Key, uniforms
 from cardume.onboard.mind import (
     FLAG,
     HEAD,
-    SCREENS,
     get_setup,
     get_trusted,
     head_of,
@@ -40,7 +39,6 @@ from cardume.simulation.fleet import (
     WHOM,
     Fleet,
     Held,
-    features_of,
     get_attitude,
     get_fault,
     get_fault_key,
@@ -100,6 +98,7 @@ def is_faulty(fleet: Fleet, kind: int, vehicle: int, time: float) -> bool:
 # ---- the sea, clocks and hulls ---------------------------------------------------------------------------------------
 
 
+@optional(otherwise="water")
 @compiled
 def water_in_fault(fleet: Fleet, vehicle: int, water: Water, time: float) -> Water:
     """The water around a vehicle, with all steps in it."""
@@ -119,6 +118,19 @@ def clock_of(fleet: Fleet, vehicle: int, time: float) -> float:
         vehicle: which.
         time: [s] true.
     """
+    return wrong_clock(fleet.faults.kinds, fleet, vehicle, time)
+
+
+@optional(otherwise="time")
+@compiled
+def wrong_clock(fleet: Fleet, vehicle: int, time: float) -> float:
+    """What a clock says [s] that may have faults.
+
+    Args:
+        fleet: the mission.
+        vehicle: which.
+        time: [s] true.
+    """
     said = time
     for k in range(fleet.faults.num_clocks):
         clock = at(fleet.faults.clocks, k * CLOCK_COLUMNS)
@@ -127,17 +139,17 @@ def clock_of(fleet: Fleet, vehicle: int, time: float) -> float:
     return said
 
 
+@optional(otherwise="reference")
 @compiled
 def reference_in_fault(fleet: Fleet, vehicle: int, reference: Reference, time: float) -> Reference:
     """What a hull follows: the reference, or nothing where the vehicle is lost."""
     return where(is_faulty(fleet, LOST, vehicle, time), adrift(get_vessel(fleet.vehicles, vehicle)), reference)
 
 
+@optional(otherwise="held")
 @compiled
 def held_aboard(fleet: Fleet, vehicle: int, held: Held) -> Held:
-    """The measured values that the autopilot goes by: those that a vehicle which screens its readings trusts."""
-    if load(features_of(fleet, vehicle), SCREENS) == 0:
-        return held
+    """The measured values that the autopilot goes by: those that the vehicle trusts."""
     trusted = get_trusted(fleet.minds, vehicle)
     return Held(
         trusted.heading,
@@ -152,6 +164,7 @@ def held_aboard(fleet: Fleet, vehicle: int, held: Held) -> Held:
     )
 
 
+@optional(otherwise="command")
 @compiled
 def command_in_fault(fleet: Fleet, vehicle: int, command: Command, time: float) -> Command:
     """The command that thrusters make of the autopilot's; none where the vehicle is lost."""
@@ -211,6 +224,7 @@ def tainted(fleet: Fleet, vehicle: int, sensor: int, reading: Any, before: Any, 
     return reading
 
 
+@optional(otherwise="reading")
 @compiled
 def attitude_in_fault(fleet: Fleet, vehicle: int, reading: AhrsReading, time: float) -> AhrsReading:
     """What the AHRS says."""
@@ -221,15 +235,16 @@ def attitude_in_fault(fleet: Fleet, vehicle: int, reading: AhrsReading, time: fl
     return tainted(fleet, vehicle, AHRS, biased, before, AhrsReading(none, none, none, none), time)
 
 
+@optional(otherwise="reading")
 @compiled
-def number_in_fault(fleet: Fleet, vehicle: int, sensor: int, reading: float, before: float, time: float) -> float:
+def number_in_fault(fleet: Fleet, vehicle: int, reading: float, sensor: int, before: float, time: float) -> float:
     """What a sensor of one number says [any].
 
     Args:
         fleet: the mission.
         vehicle: which.
-        sensor: which of SENSORS.
         reading: [any] as it would be.
+        sensor: which of SENSORS.
         before: [any] as it was.
         time: [s]
     """
@@ -237,6 +252,7 @@ def number_in_fault(fleet: Fleet, vehicle: int, sensor: int, reading: float, bef
     return tainted(fleet, vehicle, sensor, reading + bias, before, NOTHING * bias, time)
 
 
+@optional(otherwise="reading")
 @compiled
 def velocity_in_fault(fleet: Fleet, vehicle: int, reading: DvlReading, time: float) -> DvlReading:
     """What the DVL says."""
@@ -245,6 +261,7 @@ def velocity_in_fault(fleet: Fleet, vehicle: int, reading: DvlReading, time: flo
     return tainted(fleet, vehicle, DVL, biased, get_velocity(fleet.vehicles, vehicle), DvlReading(none, none), time)
 
 
+@optional(otherwise="reading")
 @compiled
 def position_in_fault(fleet: Fleet, vehicle: int, reading: GnssReading, due: bool, time: float) -> GnssReading:
     """What the GNSS says; frozen, it repeats the last position before.
@@ -267,15 +284,16 @@ def position_in_fault(fleet: Fleet, vehicle: int, reading: GnssReading, due: boo
     return tainted(fleet, vehicle, GNSS, reading, reading, GnssReading(none, none), time)
 
 
+@optional(otherwise="baseline")
 @compiled
-def baseline_in_fault(fleet: Fleet, vehicle: int, other: int, baseline: Baseline, now: int) -> Baseline:
+def baseline_in_fault(fleet: Fleet, vehicle: int, baseline: Baseline, other: int, now: int) -> Baseline:
     """From where a USBL head hears another vehicle.
 
     Args:
         fleet: the mission.
         vehicle: with the head.
-        other: who is heard.
-        baseline: to it.
+        baseline: to another one.
+        other: which.
         now: [ticks]
     """
     for fault in range(fleet.faults.num):
@@ -294,13 +312,23 @@ def key_between(fleet: Fleet, fault: int, other: int) -> Key:
     return Key(key.seed_low, key.seed_high, key.stream, key.vehicle_low, key.vehicle_high + 1.0 * other)
 
 
+@optional(otherwise="due")
 @compiled
-def is_unheard(fleet: Fleet, vehicle: int, other: int, now: int) -> bool:
-    """Whether the modem of either of two vehicles is silent now."""
+def due_in_fault(fleet: Fleet, vehicle: int, due: bool, other: int, now: int) -> bool:
+    """Whether a USBL reading of another vehicle is due: not while the modem of either is silent.
+
+    Args:
+        fleet: the mission.
+        vehicle: with the head.
+        due: [-] whether it would be, in each lane.
+        other: who would answer.
+        now: [ticks]
+    """
     time = now * fleet.tick
-    return is_faulty(fleet, SILENT, vehicle, time) | is_faulty(fleet, SILENT, other, time)
+    return due & negate(is_faulty(fleet, SILENT, vehicle, time) | is_faulty(fleet, SILENT, other, time))
 
 
+@optional(otherwise="reading")
 @compiled
 def echo_in_fault(fleet: Fleet, vehicle: int, reading: UsblReading, before: UsblReading, time: float) -> UsblReading:
     """What a USBL head says of a vehicle."""
@@ -312,8 +340,37 @@ def echo_in_fault(fleet: Fleet, vehicle: int, reading: UsblReading, before: Usbl
 # ---- packets ---------------------------------------------------------------------------------------------------------
 
 
+@optional(otherwise="sending")
 @compiled
-def record_packet(fleet: Fleet, sender: int, message: Any, sends: bool, time: float) -> None:
+def sending_in_fault(fleet: Fleet, sender: int, sending: float, time: float) -> float:
+    """Whether a vehicle sends [-]: not while its modem is silent.
+
+    Args:
+        fleet: the mission.
+        sender: which vehicle.
+        sending: [-] 1 where it would.
+        time: [s]
+    """
+    return where(is_faulty(fleet, SILENT, sender, time), 0.0, sending)
+
+
+@optional(otherwise="delivered")
+@compiled
+def delivered_in_fault(fleet: Fleet, listener: int, delivered: bool, arrival: float) -> bool:
+    """Whether a message is delivered: not where it arrives while the listener's modem is silent.
+
+    Args:
+        fleet: the mission.
+        listener: which vehicle.
+        delivered: [-] whether it would be, in each lane.
+        arrival: [s] when.
+    """
+    return delivered & negate(is_faulty(fleet, SILENT, listener, arrival))
+
+
+@optional(otherwise="message")
+@compiled
+def record_packet(fleet: Fleet, sender: int, message: Rows, sends: bool, time: float) -> Rows:
     """Let whoever will replay a vehicle's packets record one that it sends; the last before the fault is kept.
 
     Args:
@@ -330,11 +387,13 @@ def record_packet(fleet: Fleet, sender: int, message: Any, sends: bool, time: fl
             hears = sends & negate(is_active(get_fault(fleet.faults.rows, fault), time))
             for k in range(1, width):
                 store(recorded, k, where(hears, load(message, k), load(recorded, k)))
+    return message
 
 
+@optional(otherwise="time")
 @compiled
-def intrude(fleet: Fleet, listener: int, time: float) -> None:
-    """Put forged and replayed packets into a listener's inbox, those that it takes for genuine."""
+def intrude(fleet: Fleet, listener: int, time: float) -> float:
+    """Put forged and replayed packets into a listener's inbox, those that it takes for genuine, by a time [s]."""
     sources, deaf = sources_of(fleet, listener), is_faulty(fleet, SILENT, listener, time)
     for source in range(load(sources, 0)):
         sender = load(sources, source + 1)
@@ -352,6 +411,7 @@ def intrude(fleet: Fleet, listener: int, time: float) -> None:
                     forge(fleet, sender, message, row.size, taken, time)
                 if some(taken) and negate(is_forged):
                     replay(fleet, fault, message, taken)
+    return time
 
 
 @compiled
@@ -395,6 +455,7 @@ def replay(fleet: Fleet, fault: int, message: Any, taken: bool) -> None:
     store(message, FLAG, where(heard, 1.0, load(message, FLAG)))
 
 
+@optional(otherwise="finished")
 @compiled
 def finished_in_fault(fleet: Fleet, vehicle: int, finished: float, time: float) -> float:
     """Whether a vehicle's path counts as finished [-]: a lost one's does.

@@ -156,9 +156,9 @@ class Air(NamedTuple):
 class Faults(NamedTuple):
     """What goes wrong."""
 
-    num: int  # [-] 0: nothing, and none of the rest is looked at
+    num: int  # [-]
     num_clocks: int  # [-] clocks that go wrong
-    kinds: Any  # Ints (fault, FAULT_COLUMNS) kind, place of the vehicle or -1 for all, sensor or -1
+    kinds: Any  # Ints (fault, FAULT_COLUMNS) kind, place of the vehicle or -1 for all, sensor or -1; else not there
     rows: Rows  # (fault, the records of FAULTS)
     recordings: Rows  # (fault, message) packets that somebody recorded
     clocks: Any  # SharedRows (clock, 5): vehicle, begin, end [s], offset [s], drift; the same in all lanes
@@ -379,6 +379,7 @@ def mind_of(fleet: Fleet, vehicle: int) -> Mind:
         sources_of(fleet, vehicle),
         vehicle,
         fleet.size,
+        fleet.faults.kinds,
     )
 
 

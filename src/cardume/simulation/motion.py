@@ -25,15 +25,13 @@ def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water, time: f
     dt = fleet.tick / fleet.substeps
     book = book_of(fleet, vehicle, dt)
     held = get_held(fleet.vehicles, vehicle)
-    if fleet.faults.num > 0:
-        held = held_aboard(fleet, vehicle, held)
-        reference = reference_in_fault(fleet, vehicle, reference, time)
+    held = held_aboard(fleet.faults.kinds, fleet, vehicle, held)
+    reference = reference_in_fault(fleet.faults.kinds, fleet, vehicle, reference, time)
     vessel = get_vessel(fleet.vehicles, vehicle)
     surge = get_speed(fleet.minds, vehicle).surge
     for step in range(fleet.substeps):
         command = steer(book, 0, feedback_of(held, surge, reference, step * dt))
-        if fleet.faults.num > 0:
-            command = command_in_fault(fleet, vehicle, command, time)
+        command = command_in_fault(fleet.faults.kinds, fleet, vehicle, command, time)
         vessel = step_vehicle(book, 0, vessel, command, reference, water)
         put_command(fleet.vehicles, vehicle, command)
     return vessel

@@ -121,7 +121,6 @@ class VehiclePlan:
         datasheet: what it is told of its sensors' errors.
         medium: its modem and the water, where vehicles share the water; all of a fleet have one, or none.
         grid: what is left of the numbers that it sends; None: all.
-        screens: whether it looks at its readings before it believes them.
     """
 
     name: str
@@ -136,7 +135,6 @@ class VehiclePlan:
     datasheet: Datasheet = Datasheet()
     medium: Medium | None = None
     grid: Grid | None = None
-    screens: bool = False
 
     @property
     def believed_start(self) -> tuple[float, float]:

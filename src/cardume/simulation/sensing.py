@@ -1,6 +1,6 @@
 """Sensors: each reads the truth of its latency ago at its own period, and holds or forgets the reading."""
 
-from cardume.compiler import at, compiled, floor, inlined, load, negate, some, store, where
+from cardume.compiler import at, compiled, floor, inlined, load, some, store, where
 from cardume.maths import to_body
 from cardume.maths.random import Key, normals
 from cardume.onboard.mind import get_setup, head_of, is_fresh
@@ -23,8 +23,8 @@ from cardume.signals import (
 from cardume.simulation.faults import (
     attitude_in_fault,
     baseline_in_fault,
+    due_in_fault,
     echo_in_fault,
-    is_unheard,
     number_in_fault,
     position_in_fault,
     velocity_in_fault,
@@ -192,8 +192,7 @@ def sense_attitude(fleet: Fleet, vehicle: int, now: int) -> None:
         noise_of(fleet, vehicle, AHRS, timing, now),
         sampling_of(fleet, timing, now),
     )
-    if fleet.faults.num > 0:
-        reading = attitude_in_fault(fleet, vehicle, reading, now * fleet.tick)
+    reading = attitude_in_fault(fleet.faults.kinds, fleet, vehicle, reading, now * fleet.tick)
     put_attitude(fleet.vehicles, vehicle, where(due, reading, get_attitude(fleet.vehicles, vehicle)))
     schedule_next(fleet, vehicle, AHRS, timing, due)
 
@@ -211,9 +210,8 @@ def sense_depth(fleet: Fleet, vehicle: int, now: int) -> None:
         noise_of(fleet, vehicle, DEPTH, timing, now),
         sampling_of(fleet, timing, now),
     )
-    if fleet.faults.num > 0:
-        before = get_depth(fleet.vehicles, vehicle).depth
-        depth = number_in_fault(fleet, vehicle, DEPTH, depth, before, now * fleet.tick)
+    before = get_depth(fleet.vehicles, vehicle).depth
+    depth = number_in_fault(fleet.faults.kinds, fleet, vehicle, depth, DEPTH, before, now * fleet.tick)
     put_depth(fleet.vehicles, vehicle, where(due, DepthReading(depth), get_depth(fleet.vehicles, vehicle)))
     schedule_next(fleet, vehicle, DEPTH, timing, due)
 
@@ -231,9 +229,10 @@ def sense_shaft(fleet: Fleet, vehicle: int, now: int) -> None:
         noise_of(fleet, vehicle, THRUSTER_SPEED, timing, now),
         sampling_of(fleet, timing, now),
     )
-    if fleet.faults.num > 0:
-        before = get_shaft(fleet.vehicles, vehicle).shaft_speed
-        shaft_speed = number_in_fault(fleet, vehicle, THRUSTER_SPEED, shaft_speed, before, now * fleet.tick)
+    before = get_shaft(fleet.vehicles, vehicle).shaft_speed
+    shaft_speed = number_in_fault(
+        fleet.faults.kinds, fleet, vehicle, shaft_speed, THRUSTER_SPEED, before, now * fleet.tick
+    )
     put_shaft(fleet.vehicles, vehicle, where(due, ShaftReading(shaft_speed), get_shaft(fleet.vehicles, vehicle)))
     schedule_next(fleet, vehicle, THRUSTER_SPEED, timing, due)
 
@@ -253,9 +252,8 @@ def sense_altitude(fleet: Fleet, vehicle: int, now: int) -> None:
             noise_of(fleet, vehicle, ALTIMETER, timing, now),
             sampling_of(fleet, timing, now),
         )
-        if fleet.faults.num > 0:
-            before = get_altitude(fleet.vehicles, vehicle).altitude
-            altitude = number_in_fault(fleet, vehicle, ALTIMETER, altitude, before, now * fleet.tick)
+        before = get_altitude(fleet.vehicles, vehicle).altitude
+        altitude = number_in_fault(fleet.faults.kinds, fleet, vehicle, altitude, ALTIMETER, before, now * fleet.tick)
         reading = AltimeterReading(altitude)
         put_altitude(fleet.vehicles, vehicle, where(due, reading, get_altitude(fleet.vehicles, vehicle)))
         schedule_next(fleet, vehicle, ALTIMETER, timing, due)
@@ -285,8 +283,7 @@ def sense_velocity(fleet: Fleet, vehicle: int, now: int) -> None:
         sampling_of(fleet, timing, now),
         seabed_below(fleet, vehicle, then),
     )
-    if fleet.faults.num > 0:
-        reading = velocity_in_fault(fleet, vehicle, reading, now * fleet.tick)
+    reading = velocity_in_fault(fleet.faults.kinds, fleet, vehicle, reading, now * fleet.tick)
     put_velocity(fleet.vehicles, vehicle, where(due, reading, get_velocity(fleet.vehicles, vehicle)))
     schedule_next(fleet, vehicle, DVL, timing, due)
 
@@ -306,8 +303,7 @@ def sense_position(fleet: Fleet, vehicle: int, now: int) -> None:
             noise_of(fleet, vehicle, GNSS, timing, now),
             sampling_of(fleet, timing, now),
         )
-        if fleet.faults.num > 0:
-            reading = position_in_fault(fleet, vehicle, reading, due, now * fleet.tick)
+        reading = position_in_fault(fleet.faults.kinds, fleet, vehicle, reading, due, now * fleet.tick)
         new = Satellite(reading.north, reading.east, timing.latency * fleet.tick)
         put_satellite(fleet.vehicles, vehicle, where(due, new, nothing))
         schedule_next(fleet, vehicle, GNSS, timing, due)
@@ -348,16 +344,14 @@ def hear_beacon(fleet: Fleet, vehicle: int, other: int, timing: Timing, due: boo
     """One USBL reading, in the axes of the head; each pair of vehicles has its own noise."""
     rows = at(fleet.usbl, (vehicle * fleet.size + other) * USBL_WIDTH)
     store(rows, USBL_WIDTH - 1, NOTHING)
-    if fleet.faults.num > 0:
-        due = due & negate(is_unheard(fleet, vehicle, other, now))
+    due = due_in_fault(fleet.faults.kinds, fleet, vehicle, due, other, now)
     if some(due) and other != vehicle:
         here, there = vessel_then(fleet, vehicle, timing, now), vessel_then(fleet, other, timing, now)
         ahead, starboard = to_body(here.heading, there.north - here.north, there.east - here.east)
         own, others = key_of(fleet, vehicle, USBL), key_of(fleet, other, USBL)
         pair = Key(own.seed_low, own.seed_high, own.stream, own.vehicle_low, others.vehicle_low)
         baseline = Baseline(ahead, starboard, there.depth - here.depth)
-        if fleet.faults.num > 0:
-            baseline = baseline_in_fault(fleet, vehicle, other, baseline, now)
+        baseline = baseline_in_fault(fleet.faults.kinds, fleet, vehicle, baseline, other, now)
         reading = read_usbl(
             book_of(fleet, vehicle, fleet.tick),
             other,
@@ -366,9 +360,8 @@ def hear_beacon(fleet: Fleet, vehicle: int, other: int, timing: Timing, due: boo
             sampling_of(fleet, timing, now),
         )
         heard = due & (reading.range == reading.range)
-        if fleet.faults.num > 0:
-            before = UsblReading(load(rows, 0), load(rows, 1), load(rows, 2))
-            reading = echo_in_fault(fleet, vehicle, reading, before, now * fleet.tick)
+        before = UsblReading(load(rows, 0), load(rows, 1), load(rows, 2))
+        reading = echo_in_fault(fleet.faults.kinds, fleet, vehicle, reading, before, now * fleet.tick)
         store(rows, 0, where(heard, reading.range, load(rows, 0)))
         store(rows, 1, where(heard, reading.azimuth, load(rows, 1)))
         store(rows, 2, where(heard, reading.elevation, load(rows, 2)))

@@ -203,7 +203,7 @@ def _blank(whole: Whole, records: int, room: int) -> Tables:
         modems=np.zeros(size * MODEM.width),
         on_air=np.tile(np.array(OnAir()), size * size * whole.slots if whole.is_shared else 1),
         logged=np.full(links * whole.slots if whole.is_shared else 1, -1.0),
-        fault_kinds=nothing,
+        fault_kinds=none,
         faults=none,
         recordings=none,
         clocks=none,
@@ -263,13 +263,12 @@ def _orders(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _talk(vehicle: VehiclePlan) -> list[int]:
-    """Whether a vehicle answers questions, foresees what others make of its words, rounds them, screens readings."""
+    """Whether a vehicle answers questions, foresees what others make of its words, rounds them, heeds silence."""
     law = vehicle.laws["messaging"].law
     return [
         int(law.asks_for(Question)),
         int(law.asks_for(Forecast)),
         int(vehicle.grid is not None),
-        int(vehicle.screens),
         int(vehicle.orders.orders.silent_after < NEVER_TOLD),
     ]
 

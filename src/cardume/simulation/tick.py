@@ -87,9 +87,7 @@ def current_at(fleet: Fleet, vehicle: int, truth: VesselState, weather: Noise, t
     """The water around a vehicle."""
     place = Where(truth.north, truth.east, truth.depth, time, fleet.field)
     water = flow(book_of(fleet, vehicle, fleet.tick), 0, place, weather)
-    if fleet.faults.num > 0:
-        water = water_in_fault(fleet, vehicle, water, time)
-    return water
+    return water_in_fault(fleet.faults.kinds, fleet, vehicle, water, time)
 
 
 @compiled
@@ -101,8 +99,7 @@ def find_on_path(fleet: Fleet, vehicle: int, truth: VesselState, time: float) ->
     finished = where(error.finished > 0.5, 1.0, get_on_path(fleet.vehicles, vehicle).finished)
     if fleet.has_phases > 0:
         finished = where(takes_part(get_progress(fleet.minds, vehicle).phase), finished, 1.0)
-    if fleet.faults.num > 0:
-        finished = finished_in_fault(fleet, vehicle, finished, time)
+    finished = finished_in_fault(fleet.faults.kinds, fleet, vehicle, finished, time)
     on_path = OnPath(
         error.cross_track,
         error.along_track,

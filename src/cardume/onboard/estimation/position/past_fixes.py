@@ -101,7 +101,9 @@ def _is_kept(fixes: Rows, fix: Fix, valid: Moment) -> bool:
     found = valid.tick < 0.0
     for slot in range(KEPT):
         kept, tick = get_fix(fixes, slot), get_moment(fixes, slot).tick
-        same_range = (kept.range == fix.range) | negate((kept.range == kept.range) | (fix.range == fix.range))
+        same_range = (kept.level_range == fix.level_range) | negate(
+            (kept.level_range == kept.level_range) | (fix.level_range == fix.level_range)
+        )
         same = (kept.north == fix.north) & (kept.east == fix.east) & same_range
         found = found | (same & (abs(tick - valid.tick) < HALF) & (tick > HALF))
     return found
