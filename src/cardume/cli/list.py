@@ -64,7 +64,8 @@ def list_(what: str | None, allow_code: tuple[Path, ...], quiet: bool, as_json: 
             _say(entry)
         if what is None:
             click.echo(
-                "\ncardume list FAMILY, list missions, list metrics, list paths, list faults, list formats say more."
+                "\ncardume list FAMILY, list missions, list metrics, list paths, list faults, list formats,"
+                " list recordings say more."
             )
     return 0
 
