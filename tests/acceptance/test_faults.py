@@ -33,6 +33,7 @@ from cardume.missions.drawing import draw
 from cardume.missions.faults import FAULTS, REACTIONS
 from cardume.missions.loading import parse_mission
 from cardume.missions.planning import make_plan
+from cardume.report.words import meaning
 from cardume.signals import VesselState
 from cardume.simulation.fleet import VEHICLE
 from cardume.simulation.flight import Flight
@@ -176,3 +177,14 @@ def test_fifty_random_schedules() -> None:
 @pytest.mark.slow
 def test_a_thousand_random_schedules() -> None:
     fly_random(range(1000))
+
+
+# ---- words -----------------------------------------------------------------------------------------------------------
+
+
+def test_the_report_says_what_went_wrong_and_what_was_found_of_it() -> None:
+    case = next(c for c in CASES if c.kind == "sensor_frozen" and "ahrs" in c.fault)
+    mission = parse_mission(case.text, catalog())
+    told = meaning(flown(case), mission, ())
+    assert "As scheduled, port: its AHRS freezes until 160 s (at 100 s)." in told
+    assert "port did not believe its AHRS." in told
