@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shlex
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -174,13 +175,9 @@ def test_a_large_fleet_shows_its_worst(stage: Stage, cardume: Cardume) -> None:
 def test_without_the_library_of_the_report_it_says_so_in_a_line(
     stage: Stage, cardume: Cardume, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from cardume.report.page import page
-    from cardume.report.page.frame import LibraryMissing
-
-    def missing() -> str:
-        raise LibraryMissing("report.html needs plotly: pip install 'cardume[report]'")
-
-    monkeypatch.setattr(page, "library", missing)
+    for module in [name for name in sys.modules if name.partition(".")[0] == "plotly"]:
+        monkeypatch.delitem(sys.modules, module)
+    monkeypatch.setitem(sys.modules, "plotly", None)
     code, out, err = cardume("run", "paper/figure-5")
     assert (code, err) == (0, "\nnote: report.html needs plotly: pip install 'cardume[report]'\n")
     assert set(os.listdir("runs/figure-5/001")) == FILES - {"report.html"}
