@@ -63,7 +63,7 @@ def collect(fleet: Fleet, listener: int, link: int, sender: int, time: float) ->
         if some(here):
             sent = message_in(fleet, sender, slot)
             note_heard(fleet, listener, here, time - head_of(sent).time_of_validity)
-            copy_if_newer(message, sent, here, fleet.air.messages)
+            copy_if_newer(message, sent, here, extent_of(fleet, sender))
             store(arrivals, slot, where(here, NEVER, arrival))
         waiting = where(here, NEVER, arrival)
         following = where(waiting < following, waiting, following)
@@ -74,6 +74,12 @@ def collect(fleet: Fleet, listener: int, link: int, sender: int, time: float) ->
 def message_in(fleet: Fleet, sender: int, slot: int) -> Rows:
     """A message under way."""
     return at(fleet.air.outbox, (sender * fleet.air.slots + slot) * fleet.air.messages)
+
+
+@compiled
+def extent_of(fleet: Fleet, sender: int) -> int:
+    """How many numbers of a sender's messages are ever written [-]: the head alone where it tells of nobody else."""
+    return fleet.air.messages if some(get_setup(fleet.minds, sender).shares_sightings > 0.5) else HEAD
 
 
 @compiled
@@ -99,28 +105,43 @@ def speak(fleet: Fleet, sender: int, said: Said, time: float) -> None:
         message = message_in(fleet, sender, count % fleet.air.slots)
         put_head(at(message, 1), 0, where(sends, said.report, head_of(message)))
         tells = sends & (get_setup(fleet.minds, sender).shares_sightings > 0.5)
-        for other in range(fleet.size):
-            where_seen, news = get_last_seen(said.others, other), get_news(said.others, other)
-            seen = Sighting(
-                where_seen.north,
-                where_seen.east,
-                where_seen.time_of_fix,
-                news.state,
-                news.path_speed,
-                news.time_of_validity,
-                news.phase,
-                where_seen.north_variance,
-                where_seen.covariance,
-                where_seen.east_variance,
-                where_seen.range,
-                where_seen.range_variance,
-                where_seen.depth,
-            )
-            if load(features_of(fleet, sender), ROUNDS) > 0:
-                seen = rounded_sighting(seen, said.report.time_of_validity, get_grid(fleet.minds, sender))
-            put_seen(at(message, HEAD), other, where(tells, seen, get_seen(at(message, HEAD), other)))
+        if some(tells):
+            tell_of_others(fleet, sender, said, at(message, HEAD), tells)
         note_sent(fleet, sender, sends)
         record_packet(fleet.faults.kinds, fleet, sender, message, sends, time)
+
+
+@compiled
+def tell_of_others(fleet: Fleet, sender: int, said: Said, sightings: Rows, tells: bool) -> None:
+    """Write into a message what its sender knows of every vehicle.
+
+    Args:
+        fleet: the mission.
+        sender: who speaks.
+        said: what it says.
+        sightings: (vehicle, Sighting) of the message.
+        tells: [-] whether it does, in each lane.
+    """
+    for other in range(fleet.size):
+        where_seen, news = get_last_seen(said.others, other), get_news(said.others, other)
+        seen = Sighting(
+            where_seen.north,
+            where_seen.east,
+            where_seen.time_of_fix,
+            news.state,
+            news.path_speed,
+            news.time_of_validity,
+            news.phase,
+            where_seen.north_variance,
+            where_seen.covariance,
+            where_seen.east_variance,
+            where_seen.range,
+            where_seen.range_variance,
+            where_seen.depth,
+        )
+        if load(features_of(fleet, sender), ROUNDS) > 0:
+            seen = rounded_sighting(seen, said.report.time_of_validity, get_grid(fleet.minds, sender))
+        put_seen(sightings, other, where(tells, seen, get_seen(sightings, other)))
 
 
 @compiled

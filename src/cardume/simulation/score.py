@@ -7,7 +7,7 @@ path does.
 
 from typing import NamedTuple
 
-from cardume.compiler import Layout, at, compiled, gather, load, scatter, some, where
+from cardume.compiler import Layout, at, compiled, gather, load, negate, scatter, some, where
 from cardume.maths import clip, floor, sqrt
 from cardume.onboard.mind import get_current, get_progress, get_whereabouts
 from cardume.onboard.phases import is_waiting
@@ -25,6 +25,8 @@ from cardume.simulation.safety import Safety, watch
 
 BINS = 512  # of a histogram; bin k holds e with 512 e / (1 + e) in [k, k + 1)
 CROSS_TRACK, FORMATION, HISTOGRAMS = range(3)
+FAR = 1e300  # [m^2] beyond any two vehicles
+ROUNDING = 1e-6  # [m] more than all rounding of distances
 
 
 class Rules(NamedTuple):
@@ -83,24 +85,35 @@ class Deviation(NamedTuple):
     east: float = 0.0  # [m]
 
 
+class Step(NamedTuple):
+    """How far a vehicle has come since the tick before."""
+
+    north: float = 0.0  # [m] where it was last
+    east: float = 0.0  # [m]
+    depth: float = 0.0  # [m]
+    squared: float = 0.0  # [m^2]
+
+
 class FleetScore(NamedTuple):
     """Sums of the fleet."""
 
     time: float = 0.0  # [s] counted: all transients over, nobody finished
     coordination_squares: float = 0.0  # [m^2 s] of the largest difference of two coordination states
     coordination_max: float = 0.0  # [m]
-    separation_squared: float = 1e300  # [m^2] smallest distance of two vehicles
+    separation_squared: float = FAR  # [m^2] smallest distance of two vehicles
     separation_limit: float = 0.0  # [m] that two vehicles are not to come nearer
     too_near: float = NOTHING  # [s] when they first did
     one: float = 0.0  # [-] who did, by place in the engine
     other: float = 0.0  # [-]
+    room: float = 0.0  # [m] by which every pair must close before two can be nearer than any were
 
 
-SCORES = Layout(Score, Formation, Talk, Deviation, Safety)
+SCORES = Layout(Score, Formation, Talk, Deviation, Safety, Step)
 get_score, put_score = SCORES.reader(Score), SCORES.writer(Score)
 get_formation, put_formation = SCORES.reader(Formation), SCORES.writer(Formation)
 get_talk, put_talk = SCORES.reader(Talk), SCORES.writer(Talk)
 get_deviation, put_deviation = SCORES.reader(Deviation), SCORES.writer(Deviation)
+get_step, put_step = SCORES.reader(Step), SCORES.writer(Step)
 get_safety, put_safety = SCORES.reader(Safety), SCORES.writer(Safety)
 FLEET_SCORES = Layout(FleetScore)
 get_fleet_score, put_fleet_score = FLEET_SCORES.reader(FleetScore), FLEET_SCORES.writer(FleetScore)
@@ -152,9 +165,22 @@ def score(fleet: Fleet, vehicle: int, vessel: VesselState, on_path: OnPath, time
         before.absolute_error + where(on_path.finished < 0.5, dt * error, 0.0),
     )
     put_score(fleet.scores, vehicle, after)
+    put_step(fleet.scores, vehicle, step_to(vessel, get_step(fleet.scores, vehicle)))
     tally(fleet, vehicle, CROSS_TRACK, error, counted > 0.0)
     if fleet.is_watched > 0:
         put_safety(fleet.scores, vehicle, watch(fleet, vehicle, vessel, get_safety(fleet.scores, vehicle), time))
+
+
+@compiled
+def step_to(vessel: VesselState, last: Step) -> Step:
+    """The step of this tick.
+
+    Args:
+        vessel: where the vehicle is.
+        last: where it was.
+    """
+    north, east, down = vessel.north - last.north, vessel.east - last.east, vessel.depth - last.depth
+    return Step(vessel.north, vessel.east, vessel.depth, north * north + east * east + down * down)
 
 
 @compiled
@@ -215,9 +241,11 @@ def score_fleet(fleet: Fleet, time: float) -> None:
     """Count one tick of the fleet: coordination, formation and separation."""
     first = get_on_path(fleet.vehicles, 0).coordination_state
     lowest, highest, total = first, first, 0.0 * first
-    counts = first == first
+    counts, longest = first == first, 0.0 * first
     for vehicle in range(fleet.size):
         on_path, settled = get_on_path(fleet.vehicles, vehicle), get_score(fleet.scores, vehicle).settled
+        step = get_step(fleet.scores, vehicle).squared
+        longest = where(step > longest, step, longest)
         state = on_path.coordination_state
         lowest, highest = where(state < lowest, state, lowest), where(state > highest, state, highest)
         total = total + state
@@ -225,15 +253,17 @@ def score_fleet(fleet: Fleet, time: float) -> None:
     before = get_fleet_score(fleet.fleet_score, 0)
     spread = highest - lowest
     dt = where(counts, fleet.tick, 0.0)
+    nearest, room = nearest_pair(fleet, before.separation_squared, before.room - 2.0 * sqrt(longest))
     after = FleetScore(
         before.time + dt,
         before.coordination_squares + dt * spread * spread,
         where(counts & (spread > before.coordination_max), spread, before.coordination_max),
-        nearest_pair(fleet, before.separation_squared),
+        nearest,
         before.separation_limit,
         before.too_near,
         before.one,
         before.other,
+        room,
     )
     put_fleet_score(fleet.fleet_score, 0, after)
     if fleet.is_watched > 0:
@@ -243,13 +273,28 @@ def score_fleet(fleet: Fleet, time: float) -> None:
 
 
 @compiled
-def nearest_pair(fleet: Fleet, nearest: float) -> float:
-    """The smallest squared distance so far between two vehicles [m^2].
+def nearest_pair(fleet: Fleet, nearest: float, room: float) -> tuple[float, float]:
+    """The smallest squared distance so far between two vehicles [m^2], and the room left until it can fall [m].
+
+    Two vehicles close by no more than the sum of their steps, so while the room is more than rounding no pair is
+    looked at: a fleet of N costs N, not N^2, but while two are as near as they ever were.
 
     Args:
         fleet: the mission.
         nearest: [m^2] until now.
+        room: [m] that the last look left, less twice the longest step of each tick since.
     """
+    if some(negate(room > ROUNDING)):
+        now = nearest_now(fleet)
+        nearest = where(now < nearest, now, nearest)
+        room = sqrt(now) - sqrt(nearest)
+    return nearest, room
+
+
+@compiled
+def nearest_now(fleet: Fleet) -> float:
+    """The smallest squared distance between two vehicles in this tick [m^2]."""
+    nearest = FAR + 0.0 * get_vessel(fleet.vehicles, 0).north
     for one in range(fleet.size):
         here = get_vessel(fleet.vehicles, one)
         for other in range(one):
@@ -280,6 +325,7 @@ def note_too_near(fleet: Fleet, time: float) -> None:
                 where(now, time, kept.too_near),
                 where(now, one * 1.0, kept.one),
                 where(now, other * 1.0, kept.other),
+                kept.room,
             )
             put_fleet_score(fleet.fleet_score, 0, after)
 

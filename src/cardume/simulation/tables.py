@@ -329,13 +329,17 @@ def _paths(vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _graph(plan: Plan, vehicles: Sequence[VehiclePlan]) -> tuple[np.ndarray, int, int]:
-    """Lists after their length: neighbors, then whose states matter, then whose messages are read."""
+    """Lists after their length: neighbors, then whose states matter, then whose messages are read.
+
+    The state of a neighbor's neighbor matters too, where somebody sees it and tells; nobody else ever learns of it.
+    """
     hears = np.asarray(plan.hears)[np.ix_(plan.order, plan.order)] != 0.0
     np.fill_diagonal(hears, False)
     size = len(vehicles)
     neighbors: list[list[int]] = [np.flatnonzero(row).tolist() for row in hears]
-    known = [sorted({*n, *(k for j in n for k in neighbors[j])} - {i}) for i, n in enumerate(neighbors)]
     sharers = {k for k, v in enumerate(vehicles) if v.setup.shares_sightings > 0.5}
+    beyond = [{k for j in n for k in neighbors[j]} if sharers else set() for n in neighbors]
+    known = [sorted({*n, *b} - {i}) for i, (n, b) in enumerate(zip(neighbors, beyond, strict=True))]
     sources = [sorted({*n, *sharers} - {i}) for i, n in enumerate(neighbors)]
     width = 1 + max(len(x) for lists in (neighbors, known, sources) for x in lists)
     table = np.zeros((3, size, width), np.int64)
