@@ -20,16 +20,18 @@ def _bit_shapes(x: Any) -> tuple[Any, Any, Any]:
 
 
 # Before AVX-512 no processor converts a register of floats to whole numbers. Whole numbers below 2^52 need no
-# conversion: added to 2^52 (1.5 times it, if they may be negative) they are the last bits of the sum.
+# conversion: added to 2^52 (1.5 times it, if they may be negative) they are the last bits of the sum.  One number alone
+# is converted: the bits of 2^52 in an address would be a constant of 64 bits, loaded anew for each number of a record.
 _TWO_52, _THREE_51 = 2.0**52, 1.5 * 2.0**52
 _TWO_52_BITS, _THREE_51_BITS = 0x4330000000000000, 0x4338000000000000
 
 
 def whole(b: Any, number: Any) -> Any:
     """LLVM code for the signed words of whole numbers below 2^51 in size, in one lane or eight."""
-    floats, words = (DOUBLES, WORDS) if number.type == DOUBLES else (DOUBLE, INT64)
-    raised = b.bitcast(b.fadd(number, _constant(floats, _THREE_51)), words)
-    return b.sub(raised, _constant(words, _THREE_51_BITS))
+    if number.type == DOUBLE:
+        return b.fptosi(number, INT64)
+    raised = b.bitcast(b.fadd(number, _constant(DOUBLES, _THREE_51)), WORDS)
+    return b.sub(raised, _constant(WORDS, _THREE_51_BITS))
 
 
 @intrinsic

@@ -11,21 +11,27 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 
-from cardume.compiler.compiled import compiled
-from cardume.compiler.lanes import INT64, widened
+from cardume.compiler.lanes import INT64, LANES, widened
 from cardume.compiler.primitive import primitive
-from cardume.compiler.rows import ELEMENTS, gather, load_row, row_address, store_row
+from cardume.compiler.rows import ELEMENTS, gathered, load_row, row_address, store_row
 
 
 class Layout:
     """The records that one owner (a vehicle, a link, a mission) has in a table, one after the other."""
 
-    def __init__(self, *records: type[Any]) -> None:
+    def __init__(self, *records: type[Any], width: int = 0) -> None:
+        """Lay records out.
+
+        Args:
+            records: in their order.
+            width: [-] numbers of an owner, where they are more than those of the records.
+        """
         self.offsets: dict[type[Any], int] = {}
         self.width = 0
         for record in records:
             self.offsets[record] = self.width
             self.width += len(record._fields)
+        self.width = max(self.width, width)
 
     def lay_over(self, record: type[Any], first: str, *parts: type[Any]) -> None:
         """Let records stand for some of the numbers of another, one after the other from a field of it on."""
@@ -78,12 +84,26 @@ class Layout:
 
     def picker(self, record: type[Any]) -> Callable[..., Any]:
         """A function (table, owner) -> record whose owner is a signal and may differ from lane to lane."""
-        start = self.offsets[record]
-        fields = ", ".join(f"gather(table, row + {start + k}.0)" for k in range(len(record._fields)))
-        source = f"def pick(table, owner):\n    row = owner * {self.width}.0\n    return Record({fields})"
-        scope: dict[str, Any] = {"Record": record, "gather": gather}
-        exec(compile(source, f"<{record.__name__} in a table>", "exec"), scope)
-        return compiled(scope["pick"])
+        width, start, size = self.width, self.offsets[record], len(record._fields)
+
+        def pick(table: Any, owner: float) -> Any:
+            first = (int(owner) if owner == owner else 0) * width + start
+            return record(*table[first : first + size])
+
+        def typed(table: Any, owner: Any) -> Any:
+            if table not in ELEMENTS:
+                return None
+            result = LANES if owner is LANES else ELEMENTS[table]
+            return types.BaseTuple.from_types([result] * size, record)(
+                table, LANES if owner is LANES else types.float64
+            )
+
+        @primitive(pick, typed)
+        def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+            numbers = gathered(c, b, signature.args, arguments, width, start, size)
+            return c.make_tuple(b, signature.return_type, numbers)
+
+        return pick
 
     def column(self, record: type[Any], field: str) -> int:
         """The row of one field, counted from the owner's first."""

@@ -236,28 +236,52 @@ def _gather_type(table: Any, index: Any) -> Any:
 
 @primitive(gather, _gather_type)
 def _gather(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-    """Each lane reads a row of its own choice; a NaN index reads row 0."""
-    (kind, index_type), (table, index) = signature.args, arguments
-    if index_type is not LANES:
-        safe = b.select(b.fcmp_ordered("ord", index, index), index, ir.Constant(DOUBLE, 0.0))
-        return load_row(b, kind, row_address(c, b, kind, table, whole(b, safe)))
-    zero = ir.Constant(DOUBLES, [0.0] * WIDTH)
-    safe = b.select(b.fcmp_ordered("ord", index, index), index, zero)
-    numbers, answer = whole(b, safe), cgutils.alloca_once(b, DOUBLES)
-    first, is_same = _same_in_all(b, numbers)
+    return gathered(c, b, signature.args, arguments, 1, 0, 1)[0]
+
+
+def gathered(c: Any, b: Any, kinds: Any, arguments: Any, width: int, start: int, size: int) -> list[Any]:
+    """LLVM code that reads rows start, start + 1, ... of an owner that each lane chooses; of a NaN owner those of 0.
+
+    Lanes that agree, as most do, read whole rows at once; that is asked once for all of them.
+
+    Args:
+        c: context.
+        b: builder.
+        kinds: Numba types of the table and of the owner's number, a float.
+        arguments: the two.
+        width: [-] rows of an owner.
+        start: [-] the first that is read.
+        size: [-] how many are.
+    """
+    (kind, owner_type), (table, owner) = kinds, arguments
+    wide = owner_type is LANES
+    zero = ir.Constant(DOUBLES, [0.0] * WIDTH) if wide else ir.Constant(DOUBLE, 0.0)
+    numbers = whole(b, b.select(b.fcmp_ordered("ord", owner, owner), owner, zero))
+
+    def place(number: Any, k: int) -> Any:
+        first = b.mul(number, ir.Constant(INT64, width))
+        return row_address(c, b, kind, table, b.add(first, ir.Constant(INT64, start + k)))
+
+    if not wide:
+        return [load_row(b, kind, place(numbers, k)) for k in range(size)]
+    answers = [cgutils.alloca_once(b, DOUBLES) for _ in range(size)]
+    common, is_same = _same_in_all(b, numbers)
     with b.if_else(is_same, likely=True) as (together, apart):
         with together:
-            value = load_row(b, kind, row_address(c, b, kind, table, first))
-            b.store(value if kind is LANE_ROWS else spread(b, value, DOUBLES), answer)
+            for k, answer in enumerate(answers):
+                value = load_row(b, kind, place(common, k))
+                b.store(value if kind is LANE_ROWS else spread(b, value, DOUBLES), answer)
         with apart:
-            result = ir.Constant(DOUBLES, ir.Undefined)
-            for lane in range(WIDTH):
-                which = ir.Constant(INT32, lane)
-                place = row_address(c, b, kind, table, b.extract_element(numbers, which))
-                place = b.gep(place, [which]) if kind is LANE_ROWS else place
-                result = b.insert_element(result, b.load(place), which)
-            b.store(result, answer)
-    return b.load(answer)
+            lanes = [ir.Constant(INT32, lane) for lane in range(WIDTH)]
+            own = [b.extract_element(numbers, lane) for lane in lanes]
+            for k, answer in enumerate(answers):
+                result = ir.Constant(DOUBLES, ir.Undefined)
+                for number, lane in zip(own, lanes, strict=True):
+                    row = place(number, k)
+                    row = b.gep(row, [lane]) if kind is LANE_ROWS else row
+                    result = b.insert_element(result, b.load(row), lane)
+                b.store(result, answer)
+    return [b.load(answer) for answer in answers]
 
 
 def _same_in_all(b: Any, numbers: Any) -> tuple[Any, Any]:

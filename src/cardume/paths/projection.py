@@ -21,25 +21,17 @@ from cardume.paths.on_curve import curve_point, foot_on_curve, gained_speed, is_
 from cardume.paths.table import (
     AHEAD,
     ARC_START,
-    COS_COURSE,
-    CURVATURE,
-    LENGTH,
     LENGTH_OWN,
     NUM_SEGMENTS,
     OFFSET,
-    REFERENCE_LENGTH,
-    REFERENCE_RATE,
     REFERENCE_START,
-    SIN_COURSE,
     SPEED,
-    START_COURSE,
-    START_EAST,
-    START_NORTH,
-    STRETCH,
     PathPlace,
+    Segment,
     has_curves,
     segment_at,
     segment_near,
+    segment_of,
     segment_value,
 )
 from cardume.signals import NOTHING, PathError, Place
@@ -60,6 +52,7 @@ class Foot(NamedTuple):
     curvature: float  # [1/m]
     stretch: float  # [-]
     gained: float  # [m] along on the reference path
+    row: Segment  # of the table
 
 
 class PointAhead(NamedTuple):
@@ -82,41 +75,38 @@ def foot_on(place: Place, segment: float, last: float, arc_length: float) -> Foo
         last: [-] number of the last one.
         arc_length: [m] where the vehicle was: the lap of an arc is the one nearest to it.
     """
-    path = place.path
-    sin_course, cos_course = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
-    c, length = segment_value(path, segment, CURVATURE), segment_value(path, segment, LENGTH)
-    north = place.north - segment_value(path, segment, START_NORTH)
-    east = place.east - segment_value(path, segment, START_EAST)
-    x = north * cos_course + east * sin_course
-    y = east * cos_course - north * sin_course
+    row = segment_of(place.path, segment)
+    c, length = row.curvature, row.length
+    north, east = place.north - row.start_north, place.east - row.start_east
+    x = north * row.cos_course + east * row.sin_course
+    y = east * row.cos_course - north * row.sin_course
     to_center = hypot(c * x, 1.0 - c * y)  # in radii; 1 for a line
     cross_track = (2.0 * y - c * (x * x + y * y)) / (1.0 + to_center)
-    along, course = x, segment_value(path, segment, START_COURSE)
+    along, course = x, row.start_course
     curved = c != 0.0
     if some(curved):
         turning = where(curved, abs(c), 1.0)
-        was = arc_length - segment_value(path, segment, ARC_START)
+        was = arc_length - row.arc_start
         was = where((segment > 0.0) & (was < 0.0), 0.0, where((segment < last) & (was > length), length, was))
         turned = where(to_center > AT_CENTER, atan2(turning * x, 1.0 - c * y), turning * was)
         along = where(curved, unwrap_near(turned, turning * was) / turning, x)
         course = course + where(curved, where(c > 0.0, turned, -turned), 0.0)
-    stretch = segment_value(path, segment, STRETCH)
-    foot = Foot(
-        segment, along, length, cross_track, course, c, stretch, along * segment_value(path, segment, REFERENCE_RATE)
-    )
-    if has_curves(path):
-        foot = where(is_curve(path, segment), _foot_on_curve(place, segment, arc_length, x, y), foot)
+    foot = Foot(segment, along, length, cross_track, course, c, row.stretch, along * row.reference_rate, row)
+    if has_curves(place.path):
+        foot = where(is_curve(place.path, segment), _foot_on_curve(place, foot, arc_length, x, y), foot)
     return foot
 
 
 @compiled
-def _foot_on_curve(place: Place, segment: float, arc_length: float, x: float, y: float) -> Foot:
-    path = place.path
-    length = segment_value(path, segment, LENGTH)
-    was = (arc_length - segment_value(path, segment, ARC_START)) * segment_value(path, segment, REFERENCE_RATE)
+def _foot_on_curve(place: Place, straight: Foot, arc_length: float, x: float, y: float) -> Foot:
+    """The foot on a curve, of the segment of a foot that took it for a line."""
+    path, row, segment = place.path, straight.row, straight.segment
+    was = (arc_length - row.arc_start) * row.reference_rate
     foot = foot_on_curve(path, segment, x, y, was)
-    course = segment_value(path, segment, START_COURSE) + foot.turned
-    return Foot(segment, foot.own_along, length, foot.cross_track, course, foot.curvature, foot.stretch, foot.along)
+    course = row.start_course + foot.turned
+    return Foot(
+        segment, foot.own_along, row.length, foot.cross_track, course, foot.curvature, foot.stretch, foot.along, row
+    )
 
 
 @compiled
@@ -155,12 +145,18 @@ def formation_speed(path: Rows, segment: float, path_parameter: float) -> float:
         segment: [-] where the vehicle is.
         path_parameter: [m] where the formation is.
     """
-    ahead = load(path, AHEAD)
+    return _speed_there(path, segment, segment_of(path, segment), path_parameter)
+
+
+@inlined
+def _speed_there(path: Rows, segment: float, row: Segment, path_parameter: float) -> float:
+    """`formation_speed` by a segment that was looked up already."""
+    ahead, speed, begin = load(path, AHEAD), row.speed, row.reference_start
     if some(ahead != 0.0):
         segment = where(ahead != 0.0, segment_at(path, path_parameter, REFERENCE_START), segment)
-    speed = segment_value(path, segment, SPEED)
+        speed, begin = segment_value(path, segment, SPEED), segment_value(path, segment, REFERENCE_START)
     if has_curves(path):
-        speed = speed + gained_speed(path, segment, path_parameter - segment_value(path, segment, REFERENCE_START))
+        speed = speed + gained_speed(path, segment, path_parameter - begin)
     return speed
 
 
@@ -184,14 +180,14 @@ def project(place: Place, memory: PathPlace) -> tuple[PathError, PathPlace]:
     """
     path, foot = place.path, find_foot(place, memory)
     last = load(path, NUM_SEGMENTS) - 1.0
-    segment = foot.segment
+    segment, row = foot.segment, foot.row
     # Only a corner leaves the foot beyond an inner end.
     short = (segment > 0.0) & (foot.along < 0.0)
     long = (segment < last) & (foot.along > foot.length)
     along = where(short, 0.0, where(long, foot.length, foot.along))
-    gained = where(short | long, along * segment_value(path, segment, REFERENCE_RATE), foot.gained)
-    arc_length = segment_value(path, segment, ARC_START) + along
-    path_parameter = segment_value(path, segment, REFERENCE_START) + gained - load(path, AHEAD)
+    gained = where(short | long, along * row.reference_rate, foot.gained)
+    arc_length = row.arc_start + along
+    path_parameter = row.reference_start + gained - load(path, AHEAD)
     finished = (segment >= last) & (along >= foot.length)
     if has_curves(path):  # a closed one goes on
         finished = finished | (arc_length >= load(path, LENGTH_OWN))
@@ -202,7 +198,7 @@ def project(place: Place, memory: PathPlace) -> tuple[PathError, PathPlace]:
         0.0 * along,
         path_parameter,
         foot.stretch,
-        formation_speed(path, segment, path_parameter),
+        _speed_there(path, segment, row, path_parameter),
         arc_length,
         where(finished, 1.0, 0.0),
         0.0 * along,
@@ -241,8 +237,9 @@ def point_of_formation(path: Rows, path_parameter: float, guess: float) -> Point
     """
     gamma = path_parameter + load(path, AHEAD)
     segment = segment_near(path, gamma, REFERENCE_START, guess)
-    beyond = gamma - segment_value(path, segment, REFERENCE_START)
-    point = _point_along(path, segment, beyond * segment_value(path, segment, STRETCH))
+    row = segment_of(path, segment)
+    beyond = gamma - row.reference_start
+    point = _point_along(row, beyond * row.stretch)
     if has_curves(path):
         point = where(is_curve(path, segment), _point_along_curve(path, segment, beyond), point)
     return point
@@ -260,8 +257,9 @@ def point_on(path: Rows, segment: float, arc_length: float) -> PointAhead:
     Returns:
         Position [m], course [rad] in (-pi, pi], and its sine and cosine.
     """
-    along = arc_length - segment_value(path, segment, ARC_START)
-    point = _point_along(path, segment, along)
+    row = segment_of(path, segment)
+    along = arc_length - row.arc_start
+    point = _point_along(row, along)
     if has_curves(path):
         on_curve = _point_along_curve(path, segment, reference_along(path, segment, along))
         point = where(is_curve(path, segment), on_curve, point)
@@ -269,10 +267,9 @@ def point_on(path: Rows, segment: float, arc_length: float) -> PointAhead:
 
 
 @inlined
-def _point_along(path: Rows, segment: float, s: float) -> PointAhead:
+def _point_along(row: Segment, s: float) -> PointAhead:
     """The point s [m] from the start of a line or an arc."""
-    c = segment_value(path, segment, CURVATURE)
-    sin_start, cos_start = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
+    c, sin_start, cos_start = row.curvature, row.sin_course, row.cos_course
     curved = c != 0.0
     x, y, turned = s, 0.0 * s, c * s
     sin_turned, cos_turned = 0.0 * s, 1.0 + 0.0 * s
@@ -285,9 +282,9 @@ def _point_along(path: Rows, segment: float, s: float) -> PointAhead:
         y = where(curved, diameter * sin_half * sin_half, 0.0)
         sin_turned, cos_turned = 2.0 * sin_half * cos_half, 1.0 - 2.0 * sin_half * sin_half
     return PointAhead(
-        segment_value(path, segment, START_NORTH) + x * cos_start - y * sin_start,
-        segment_value(path, segment, START_EAST) + x * sin_start + y * cos_start,
-        wrap_angle(segment_value(path, segment, START_COURSE) + turned),
+        row.start_north + x * cos_start - y * sin_start,
+        row.start_east + x * sin_start + y * cos_start,
+        wrap_angle(row.start_course + turned),
         sin_start * cos_turned + cos_start * sin_turned,
         cos_start * cos_turned - sin_start * sin_turned,
     )
@@ -296,17 +293,17 @@ def _point_along(path: Rows, segment: float, s: float) -> PointAhead:
 @compiled
 def _point_along_curve(path: Rows, segment: float, along: float) -> PointAhead:
     """The own point abeam of the one that lies `along` [m] from the start of a reference curve."""
-    inside = clip(along, 0.0, segment_value(path, segment, REFERENCE_LENGTH))
+    row = segment_of(path, segment)
+    inside = clip(along, 0.0, row.reference_length)
     point, beyond, offset = curve_point(path, segment, inside), along - inside, segment_value(path, segment, OFFSET)
-    sin_start, cos_start = segment_value(path, segment, SIN_COURSE), segment_value(path, segment, COS_COURSE)
     x = point.ahead + beyond * point.cosine - offset * point.sine
     y = point.starboard + beyond * point.sine + offset * (point.cosine - 1.0)
     return PointAhead(
-        segment_value(path, segment, START_NORTH) + x * cos_start - y * sin_start,
-        segment_value(path, segment, START_EAST) + x * sin_start + y * cos_start,
-        wrap_angle(segment_value(path, segment, START_COURSE) + point.turned),
-        sin_start * point.cosine + cos_start * point.sine,
-        cos_start * point.cosine - sin_start * point.sine,
+        row.start_north + x * row.cos_course - y * row.sin_course,
+        row.start_east + x * row.sin_course + y * row.cos_course,
+        wrap_angle(row.start_course + point.turned),
+        row.sin_course * point.cosine + row.cos_course * point.sine,
+        row.cos_course * point.cosine - row.sin_course * point.sine,
     )
 
 

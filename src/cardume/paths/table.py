@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cardume.compiler import Rows, at, compiled, gather, load, some, where
+from cardume.compiler import Layout, Rows, at, compiled, gather, inlined, load, some, where
 
 MAX_SEGMENTS = 4096  # what the search in `segment_at` covers
 
@@ -61,6 +61,30 @@ SEGMENT_WIDTH = GAINED_SPEED + DEGREE
 ROW = float(SEGMENT_WIDTH)
 
 
+class Segment(NamedTuple):
+    """The numbers of a segment that lines, arcs and curves have, in the order of its row."""
+
+    start_north: float  # [m]
+    start_east: float  # [m]
+    start_course: float  # [rad]
+    sin_course: float  # [-] at the start
+    cos_course: float  # [-]
+    curvature: float  # [1/m] of the own path, > 0 to starboard; 0 for a line and for a curve
+    center_north: float  # [m]
+    center_east: float  # [m]
+    radius: float  # [m] 0 for a line and a curve
+    length: float  # [m] of the own path
+    arc_start: float  # [m] own arc length at the start
+    reference_start: float  # [m] gamma at the start
+    reference_length: float  # [m]
+    speed: float  # [m/s] v_L there
+    stretch: float  # [-] own length per reference length
+    reference_rate: float  # [-] reference length per own length
+
+
+_pick_segment = Layout(Segment, width=SEGMENT_WIDTH).picker(Segment)
+
+
 class PathPlace(NamedTuple):
     """Where on its own path a vehicle was last: what keeps gamma from wrapping and from jumping."""
 
@@ -92,6 +116,17 @@ def segment_value(path: Rows, segment: float, column: int) -> float:
         column: one of the names above.
     """
     return gather(at(path, HEADER_WIDTH + column), segment * ROW)
+
+
+@inlined
+def segment_of(path: Rows, number: float) -> Segment:
+    """A segment of a path.
+
+    Args:
+        path: (n,) path table.
+        number: [-] 0 for the first.
+    """
+    return _pick_segment(at(path, HEADER_WIDTH), number)
 
 
 @compiled
@@ -128,15 +163,22 @@ def segment_near(path: Rows, value: float, column: int, guess: float) -> float:
         column: ARC_START or REFERENCE_START.
         guess: [-] number of a segment of this path.
     """
-    last = load(path, NUM_SEGMENTS) - 1.0
-    onward = (guess < last) & (segment_value(path, where(guess < last, guess + 1.0, guess), column) <= value)
-    back = (guess > 0.0) & (segment_value(path, guess, column) > value)
-    found = guess + where(onward, 1.0, where(back, -1.0, 0.0))
-    beyond = (found < last) & (segment_value(path, where(found < last, found + 1.0, found), column) <= value)
-    before = (found > 0.0) & (segment_value(path, found, column) > value)
-    if some(beyond | before):
-        found = segment_at(path, value, column)
+    onward, back = _beside(path, value, column, guess)
+    found = guess
+    if some(onward | back):
+        found = guess + where(onward, 1.0, where(back, -1.0, 0.0))
+        beyond, before = _beside(path, value, column, found)
+        if some(beyond | before):
+            found = segment_at(path, value, column)
     return found
+
+
+@inlined
+def _beside(path: Rows, value: float, column: int, guess: float) -> tuple[bool, bool]:
+    """Whether the segment of a value is one after a guess, and whether it is one before it."""
+    has_next, has_last = guess < load(path, NUM_SEGMENTS) - 1.0, guess > 0.0
+    onward = has_next & (segment_value(path, where(has_next, guess + 1.0, guess), column) <= value)
+    return onward, has_last & (segment_value(path, guess, column) > value)
 
 
 @compiled
@@ -168,6 +210,6 @@ def place_near(path: Rows, path_parameter: float, guess: float) -> PathPlace:
         guess: [-] number of the segment where it probably is.
     """
     gamma = path_parameter + load(path, AHEAD)
-    segment = segment_near(path, gamma, REFERENCE_START, guess)
-    beyond = (gamma - segment_value(path, segment, REFERENCE_START)) * segment_value(path, segment, STRETCH)
-    return PathPlace(segment, segment_value(path, segment, ARC_START) + beyond)
+    number = segment_near(path, gamma, REFERENCE_START, guess)
+    segment = segment_of(path, number)
+    return PathPlace(number, segment.arc_start + (gamma - segment.reference_start) * segment.stretch)
