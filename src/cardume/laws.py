@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cardume.compiler import Rows, at, load, load_fixed, store
+from cardume.compiler import Rows, at, load, load_fixed, store, value_of
 from cardume.compiler.calls import (
     FLAT,
     STRIDED,
@@ -369,6 +369,7 @@ class Law:
         records = {"memory": f"Memory({', '.join(slots)})"}
         if self.constants_type is not None:
             records["constants"] = read_record(self.constants_type, "gains", self._num_own, scope)
+        records |= {g: f"value_of({g})" for g in self._given if g.startswith("signal_")}
         given = ", ".join(records.get(g, g) for g in self._given)
         call = f"    answer, after = law({given})" if stores else f"    answer = law({given})"
         if self.memory_type is not None and not stores:
@@ -383,6 +384,7 @@ class Law:
             "load_fixed": load_fixed,
             "store": store,
             "at": at,
+            "value_of": value_of,
             "as_answer": law_answer(self._family.result, self._family.plain, self._family.may_leave_out),
         }
         exec(compile(f"def {name}({signals}, gains, memory, dt):\n{body}", __file__, "exec"), scope)

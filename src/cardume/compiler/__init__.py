@@ -11,7 +11,7 @@ from cardume.compiler.lanes import (
     where,
 )
 from cardume.compiler.records import Layout
-from cardume.compiler.reference import passing
+from cardume.compiler.reference import passing, value_of
 from cardume.compiler.rows import (
     Rows,
     SharedRows,
@@ -57,5 +57,6 @@ __all__ = [
     "store",
     "to_bits",
     "to_float",
+    "value_of",
     "where",
 ]

@@ -16,6 +16,8 @@ from numba.core import cgutils
 
 from cardume.compiler.lanes import INT32, INT64, LANES, WIDTH, widened
 from cardume.compiler.primitive import primitive
+from cardume.compiler.records import size_of
+from cardume.compiler.reference import ReferenceType, put_aside, record_at
 from cardume.compiler.rows import (
     ELEMENTS,
     FLAT_ROWS,
@@ -35,6 +37,9 @@ _python_laws: list[Callable[..., Any]] = []  # NUMBA_DISABLE_JIT: a handle is a 
 FLAT, STRIDED, WIDE = FLAT_ROWS, ROWS, LANE_ROWS  # one mission; one lane of eight; eight missions at once
 
 
+LARGE = 8  # numbers of a record, from which it goes by reference: there are registers for eight
+
+
 def record_type(kind: Any, rows: Any) -> Any:
     """Numba type of a float, a record, or a tuple of them, as wide as the rows of a table."""
     real = ELEMENTS[rows]
@@ -48,8 +53,12 @@ def record_type(kind: Any, rows: Any) -> Any:
 
 
 def law_signature(signals: tuple[Any, ...], result: Any, rows: Any) -> Any:
-    """Numba signature that all laws of a family share: FLAT, STRIDED or WIDE."""
-    arguments = [record_type(s, rows) for s in signals]
+    """Numba signature that all laws of a family share: FLAT, STRIDED or WIDE.
+
+    A large record goes by reference: the law reads what it wants of it, and several laws read the same.
+    """
+    kinds = [record_type(s, rows) for s in signals]
+    arguments = [ReferenceType(k) if size_of(s) >= LARGE else k for s, k in zip(signals, kinds, strict=True)]
     return record_type(result, rows)(*arguments, rows, rows, types.float64)
 
 
@@ -78,12 +87,23 @@ def define_verb(verb: Callable[..., Any], place: int, signals: tuple[Any, ...], 
         gains = row_address(c, b, book_type.types[1], gains, gain)
         memory = row_address(c, b, book_type.types[2], memory, b.add(first, b.mul(slot, width)))
         parts = [
-            as_law_sees(c, b, value, kind, wanted)
+            _handed(c, b, value, kind, wanted)
             for value, kind, wanted in zip(arguments[2:], signature.args[2:], law.args, strict=False)
         ]
         if law is wide:
             return _call_lanes(c, b, wide, strided, handle, parts, gains, memory, dt)
         return _call(c, b, flat, handle, [*parts, gains, memory, dt])
+
+
+def _handed(c: Any, b: Any, value: Any, kind: Any, wanted: Any) -> Any:
+    """LLVM code that brings a signal to the type that a law's signature asks for, by reference where that does."""
+    if kind == wanted:
+        return value
+    if isinstance(kind, ReferenceType):
+        value, kind = record_at(c, b, kind, value), kind.record
+    if isinstance(wanted, ReferenceType):
+        return put_aside(b, as_law_sees(c, b, value, kind, wanted.record))
+    return as_law_sees(c, b, value, kind, wanted)
 
 
 def _call_lanes(
@@ -161,13 +181,16 @@ def address(dispatcher: Any, signature: Any) -> int:
 
 
 def _call(c: Any, b: Any, signature: Any, handle: Any, arguments: Any) -> Any:
+    """Numba's own call, but for setting the answer to zero first: a law that returns writes all of it."""
     convention = c.call_conv
-    pointer = convention.get_function_type(signature.return_type, signature.args).as_pointer()
-    law = b.inttoptr(handle, pointer)
-    status, value = convention.call_function(b, law, signature.return_type, signature.args, arguments)
-    with cgutils.if_unlikely(b, status.is_error):
-        convention.return_status_propagate(b, status)
-    return value
+    kind = convention.get_function_type(signature.return_type, signature.args)
+    with b.goto_entry_block():
+        answer, trouble = (b.alloca(kind.args[k].pointee) for k in range(2))
+    given = c.get_arg_packer(signature.args).as_arguments(b, arguments)
+    code = b.call(b.inttoptr(handle, kind.as_pointer()), [answer, trouble, *given])
+    with cgutils.if_unlikely(b, b.icmp_signed("!=", code, code.type(0))):
+        convention.return_status_propagate(b, convention._get_return_status(b, code, b.load(trouble)))
+    return c.get_returned_value(b, signature.return_type, b.load(answer))
 
 
 def _lane_value(c: Any, b: Any, value: Any, kind: Any, lane: Any) -> Any:
@@ -176,6 +199,8 @@ def _lane_value(c: Any, b: Any, value: Any, kind: Any, lane: Any) -> Any:
         return b.extract_element(value, b.trunc(lane, INT32))
     if kind is LANE_ROWS:
         return lane_of(c, b, value, lane)
+    if isinstance(kind, ReferenceType):
+        return put_aside(b, _lane_value(c, b, record_at(c, b, kind, value), kind.record, lane))
     if isinstance(kind, types.BaseTuple):
         scalars = [{LANES: types.float64, LANE_ROWS: ROWS}.get(k, k) for k in kind.types]
         parts = [_lane_value(c, b, b.extract_value(value, at), k, lane) for at, k in enumerate(kind.types)]

@@ -13,7 +13,8 @@ from numba import types
 
 from cardume.compiler.lanes import INT64, LANES, widened
 from cardume.compiler.primitive import primitive
-from cardume.compiler.rows import ELEMENTS, gathered, load_row, row_address, store_row
+from cardume.compiler.reference import ReferenceType
+from cardume.compiler.rows import ELEMENTS, FLAT_ROWS, LANE_ROWS, gathered, load_row, row_address, store_row
 
 
 class Layout:
@@ -59,6 +60,27 @@ class Layout:
             return c.make_tuple(b, signature.return_type, [load_row(b, kind, place) for place in places])
 
         return get
+
+    def viewer(self, record: type[Any]) -> Callable[..., Any]:
+        """A function (table, owner) -> record by reference: in compiled code it is what the table says when it is read."""
+        width, start, size = self.width, self.offsets[record], len(record._fields)
+        get = self.reader(record)
+
+        def view(table: Any, owner: int) -> Any:
+            return get(table, owner)
+
+        def typed(table: Any, owner: Any) -> Any:
+            if table not in (FLAT_ROWS, LANE_ROWS):
+                return None
+            kind = ReferenceType(types.BaseTuple.from_types([ELEMENTS[table]] * size, record))
+            return kind(table, types.int64)
+
+        @primitive(view, typed)
+        def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+            first = _places(c, b, signature, arguments, width, start, 1)[0]
+            return b.bitcast(first, c.get_value_type(signature.return_type))
+
+        return view
 
     def writer(self, record: type[Any]) -> Callable[..., Any]:
         """A function (table, owner, record) that stores the record."""

@@ -8,7 +8,6 @@ from typing import Any
 
 from llvmlite import ir
 from numba import types
-from numba.core import cgutils
 from numba.core.imputils import lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model
@@ -42,8 +41,44 @@ class _ReferenceFields(AttributeTemplate):
 
 @lower_getattr_generic(ReferenceType)
 def _read_field(context: Any, builder: Any, kind: Any, value: Any, name: str) -> Any:
-    place = kind.record.instance_class._fields.index(name)
-    return builder.load(builder.gep(value, [ir.Constant(INT32, 0), ir.Constant(INT32, place)], inbounds=True))
+    return field_at(builder, value, kind.record.instance_class._fields.index(name))
+
+
+def field_at(b: Any, reference: Any, place: int) -> Any:
+    """LLVM code that reads one field; a row of a table is aligned for one number, not for eight."""
+    return b.load(b.gep(reference, [ir.Constant(INT32, 0), ir.Constant(INT32, place)], inbounds=True), align=8)
+
+
+def record_at(c: Any, b: Any, kind: Any, reference: Any) -> Any:
+    """LLVM code that reads the whole record of a ReferenceType."""
+    return c.make_tuple(b, kind.record, [field_at(b, reference, k) for k in range(len(kind.record.types))])
+
+
+def value_of(record: Any) -> Any:
+    """The record itself, of one that may be by reference; what is not asked of it is not read.
+
+    Args:
+        record: a `NamedTuple`.
+    """
+    return record
+
+
+def _value_type(record: Any) -> Any:
+    return (record.record if isinstance(record, ReferenceType) else record)(record)
+
+
+@primitive(value_of, _value_type)
+def _read_all(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    kind = signature.args[0]
+    return record_at(c, b, kind, arguments[0]) if isinstance(kind, ReferenceType) else arguments[0]
+
+
+def put_aside(b: Any, value: Any) -> Any:
+    """LLVM code that puts a value on the stack of the function and gives its address."""
+    with b.goto_entry_block():
+        place = b.alloca(value.type)
+    b.store(value, place)
+    return place
 
 
 def passing(record: Any) -> Any:
@@ -60,4 +95,4 @@ def passing(record: Any) -> Any:
 
 @primitive(passing, lambda record: ReferenceType(record)(record) if isinstance(record, types.BaseNamedTuple) else None)
 def _take_the_address(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-    return cgutils.alloca_once_value(b, arguments[0])
+    return put_aside(b, arguments[0])

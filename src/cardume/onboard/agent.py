@@ -1,6 +1,6 @@
 """The order in which a vehicle thinks.  The engine and the bridges both call `decide`."""
 
-from cardume.compiler import Rows, compiled, load, some, where
+from cardume.compiler import Rows, compiled, load, passing, some, where
 from cardume.maths import atan2, clip, hypot
 from cardume.onboard.compensation import compensate as choose_heading
 from cardume.onboard.coordination import correct_speed
@@ -59,7 +59,7 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
     """
     measured = screen(mind, measured, time)
     speed = speed_through_water(mind, measured)
-    motion = believed_motion(mind, measured, speed)
+    motion = passing(believed_motion(mind, measured, speed))
     position = navigate(mind, measured, heard, motion, time)
     current = observe_current(mind, position, motion)
     error = keep_pace(mind, locate(mind, position, motion, current), time)

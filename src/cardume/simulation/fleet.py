@@ -84,6 +84,7 @@ class Satellite(NamedTuple):
 
 VEHICLE = Layout(VesselState, Water, Reference, Command, PathPlace, OnPath, Held, Satellite)
 get_vessel, put_vessel = VEHICLE.reader(VesselState), VEHICLE.writer(VesselState)
+view_vessel = VEHICLE.viewer(VesselState)
 get_water, put_water = VEHICLE.reader(Water), VEHICLE.writer(Water)
 get_reference, put_reference = VEHICLE.reader(Reference), VEHICLE.writer(Reference)
 get_command, put_command = VEHICLE.reader(Command), VEHICLE.writer(Command)

@@ -3,21 +3,22 @@
 from cardume.compiler import compiled, where
 from cardume.onboard.control.base import steer
 from cardume.onboard.mind import get_speed
-from cardume.signals import Feedback, Reference, VesselState, Water
+from cardume.signals import Feedback, Reference, Water
 from cardume.simulation.faults import command_in_fault, held_aboard, reference_in_fault
 from cardume.simulation.fleet import (
     Fleet,
     Held,
     book_of,
     get_held,
-    get_vessel,
     put_command,
+    put_vessel,
+    view_vessel,
 )
 from cardume.vehicles.base import step_vehicle
 
 
 @compiled
-def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water, time: float) -> VesselState:
+def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water, time: float) -> None:
     """Let one vehicle follow its reference for one tick, in the water around it.
 
     Between ticks the autopilot sees the measured values of the tick, carried on by the measured rates.
@@ -27,14 +28,13 @@ def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water, time: f
     held = get_held(fleet.vehicles, vehicle)
     held = held_aboard(fleet.faults.kinds, fleet, vehicle, held)
     reference = reference_in_fault(fleet.faults.kinds, fleet, vehicle, reference, time)
-    vessel = get_vessel(fleet.vehicles, vehicle)
+    vessel = view_vessel(fleet.vehicles, vehicle)
     surge = get_speed(fleet.minds, vehicle).surge
     for step in range(fleet.substeps):
         command = steer(book, 0, feedback_of(held, surge, reference, step * dt))
         command = command_in_fault(fleet.faults.kinds, fleet, vehicle, command, time)
-        vessel = step_vehicle(book, 0, vessel, command, reference, water)
+        put_vessel(fleet.vehicles, vehicle, step_vehicle(book, 0, vessel, command, reference, water))
         put_command(fleet.vehicles, vehicle, command)
-    return vessel
 
 
 @compiled

@@ -1,6 +1,6 @@
 """Sensors: each reads the truth of its latency ago at its own period, and holds or forgets the reading."""
 
-from cardume.compiler import at, compiled, floor, inlined, load, some, store, where
+from cardume.compiler import at, compiled, floor, inlined, load, passing, some, store, where
 from cardume.maths import to_body
 from cardume.maths.random import Key, normals
 from cardume.onboard.mind import get_setup, head_of, is_fresh
@@ -66,6 +66,7 @@ from cardume.simulation.fleet import (
     put_shaft,
     put_velocity,
     sources_of,
+    view_vessel,
 )
 from cardume.simulation.noise import NOISE_WIDTH, noise_of_reading
 from cardume.world.bathymetry import sound
@@ -158,9 +159,9 @@ def past_row(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> float:
 @inlined
 def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselState:
     """The state of a vehicle when the reading of this tick was valid."""
-    vessel = get_vessel(fleet.vehicles, vehicle)
+    vessel = view_vessel(fleet.vehicles, vehicle)
     if some(timing.latency > 0.5):
-        vessel = pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now))
+        vessel = passing(pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now)))
     return vessel
 
 

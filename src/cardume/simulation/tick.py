@@ -24,7 +24,6 @@ from cardume.simulation.fleet import (
     put_on_path,
     put_reference,
     put_true_place,
-    put_vessel,
     put_water,
 )
 from cardume.simulation.motion import move
@@ -67,8 +66,7 @@ def tick(fleet: Fleet, now: int) -> bool:
         score(fleet, i, get_vessel(fleet.vehicles, i), get_on_path(fleet.vehicles, i), time)
     score_fleet(fleet, time)
     for i in range(fleet.size):
-        vessel = move(fleet, i, get_reference(fleet.vehicles, i), get_water(fleet.vehicles, i), time)
-        put_vessel(fleet.vehicles, i, vessel)
+        move(fleet, i, get_reference(fleet.vehicles, i), get_water(fleet.vehicles, i), time)
     return health(fleet, time)
 
 
