@@ -57,12 +57,12 @@ def decide(mind: Mind, measured: Measured, heard: Rows, time: float) -> tuple[Re
 
     Source: paper section 4; (37), (49), (33), (5)-(8), (53)-(55), (3)-(18), (44)-(45), (36).
     """
-    measured = screen(mind, measured, time)
+    measured = passing(screen(mind, measured, time))
     speed = speed_through_water(mind, measured)
     motion = passing(believed_motion(mind, measured, speed))
     position = navigate(mind, measured, heard, motion, time)
     current = observe_current(mind, position, motion)
-    error = keep_pace(mind, locate(mind, position, motion, current), time)
+    error = passing(keep_pace(mind, locate(mind, position, motion, current), time))
     look_around(mind, measured, position, motion, error, time)
     others = predict_neighbors(mind, heard, error, time)
     change_phase(mind, measured, heard, error, time)

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cardume.compiler import Layout, Rows, at, compiled, load, rows_of
+from cardume.compiler import Layout, Rows, at, compiled, inlined, load, rows_of
 from cardume.laws import COLUMNS, FAMILIES, LawBook
 from cardume.maths.random import Key
 from cardume.onboard.mind import NUM_FEATURES, ORDERS_START, OTHERS_WIDTH, OWN_WIDTH, Mind
@@ -402,7 +402,7 @@ def sources_of(fleet: Fleet, vehicle: int) -> Any:
     return at(fleet.graph, 2 * fleet.size * fleet.list_width + vehicle * fleet.list_width)
 
 
-@compiled
+@inlined
 def measured_of(fleet: Fleet, vehicle: int) -> Measured:
     """All that a vehicle's sensors say in this tick."""
     held, satellite = get_held(fleet.vehicles, vehicle), get_satellite(fleet.vehicles, vehicle)

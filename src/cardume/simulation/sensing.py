@@ -10,7 +10,6 @@ from cardume.signals import (
     Baseline,
     DvlReading,
     GnssReading,
-    Measured,
     Noise,
     Sampling,
     Seabed,
@@ -57,7 +56,6 @@ from cardume.simulation.fleet import (
     get_velocity,
     get_vessel,
     get_water,
-    measured_of,
     put_altitude,
     put_attitude,
     put_depth,
@@ -86,8 +84,8 @@ put_past_water, pick_past_water = SEEN.writer(Water), SEEN.picker(Water)
 
 
 @compiled
-def sense(fleet: Fleet, vehicle: int, now: int) -> Measured:
-    """Let every sensor of a vehicle that is due read, and return what all of them say now."""
+def sense(fleet: Fleet, vehicle: int, now: int) -> None:
+    """Let every sensor of a vehicle that is due read."""
     remember(fleet, vehicle, now)
     if reads(fleet, vehicle, AHRS, now):
         sense_attitude(fleet, vehicle, now)
@@ -101,7 +99,6 @@ def sense(fleet: Fleet, vehicle: int, now: int) -> Measured:
         sense_velocity(fleet, vehicle, now)
     sense_position(fleet, vehicle, now)
     sense_others(fleet, vehicle, now)
-    return measured_of(fleet, vehicle)
 
 
 @compiled

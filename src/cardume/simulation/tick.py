@@ -20,6 +20,7 @@ from cardume.simulation.fleet import (
     get_true_place,
     get_vessel,
     get_water,
+    measured_of,
     mind_of,
     put_on_path,
     put_reference,
@@ -55,8 +56,8 @@ def tick(fleet: Fleet, now: int) -> bool:
         put_water(fleet.vehicles, i, current_at(fleet, i, truth, weather, time))
         find_on_path(fleet, i, truth, time)
     for i in range(fleet.size):
-        measured = sense(fleet, i, now)
-        heard = arrived(fleet, i, time)
+        sense(fleet, i, now)
+        measured, heard = measured_of(fleet, i), arrived(fleet, i, time)
         reference, said = decide(passing(mind_of(fleet, i)), measured, heard, clock_of(fleet, i, time))
         put_reference(fleet.vehicles, i, reference)
         speak(fleet, i, said, time)
