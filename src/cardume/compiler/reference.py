@@ -84,6 +84,8 @@ def put_aside(b: Any, value: Any) -> Any:
 def passing(record: Any) -> Any:
     """The same record, by reference, until this place in the calling function makes the next one.
 
+    It lies on the stack of that function, which may hand it on to those that it calls but never return it.
+
     Args:
         record: a `NamedTuple`.
 

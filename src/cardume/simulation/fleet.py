@@ -183,7 +183,7 @@ class Fleet(NamedTuple):
     timings: Rows  # (vehicle, sensor, Timing)
     keys: Rows  # (vehicle, stream, Key), then the fleet's own
     noise: Rows  # (vehicle, sensor, NOISE_WIDTH), then the fleet's own
-    past: Rows  # (vehicle, tick, SEEN)
+    past: Rows  # (vehicle, tick, SEEN), then of each vehicle the one that is looked at
     past_size: int  # [ticks] 1: no sensor looks back
     paths: Rows
     path_starts: Any  # Ints (vehicle,)

@@ -1,6 +1,6 @@
 """Sensors: each reads the truth of its latency ago at its own period, and holds or forgets the reading."""
 
-from cardume.compiler import at, compiled, floor, inlined, load, passing, some, store, where
+from cardume.compiler import at, compiled, floor, inlined, load, some, store, where
 from cardume.maths import to_body
 from cardume.maths.random import Key, normals
 from cardume.onboard.mind import get_setup, head_of, is_fresh
@@ -80,6 +80,7 @@ from cardume.world.sensors.base import (
 
 LINK = STREAMS.index("link")
 put_past_vessel, pick_past_vessel = SEEN.writer(VesselState), SEEN.picker(VesselState)
+view_past_vessel = SEEN.viewer(VesselState)
 put_past_water, pick_past_water = SEEN.writer(Water), SEEN.picker(Water)
 
 
@@ -155,10 +156,12 @@ def past_row(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> float:
 
 @inlined
 def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselState:
-    """The state of a vehicle when the reading of this tick was valid."""
+    """The state of a vehicle when the reading of this tick was valid, by reference: where it is kept, or copied to."""
     vessel = view_vessel(fleet.vehicles, vehicle)
     if some(timing.latency > 0.5):
-        vessel = passing(pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now)))
+        aside = fleet.size * fleet.past_size + vehicle
+        put_past_vessel(fleet.past, aside, pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now)))
+        vessel = view_past_vessel(fleet.past, aside)
     return vessel
 
 

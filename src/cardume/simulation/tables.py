@@ -186,7 +186,7 @@ def _blank(whole: Whole, records: int, room: int) -> Tables:
         timings=none,
         keys=none,
         noise=np.zeros((size * NUM_SENSORS + 1) * NOISE_WIDTH),
-        past=np.zeros(max(1, size * whole.past_size * SEEN.width)),
+        past=np.zeros(size * (whole.past_size + 1) * SEEN.width),
         paths=none,
         path_starts=nothing,
         graph=nothing,
