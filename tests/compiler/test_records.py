@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numba import config
 
-from cardume.compiler import WIDTH, Layout, load, rows_of, store, where
+from cardume.compiler import WIDTH, Layout, compiled, load, passing, rows_of, store, value_of, where
 from compiler.three_ways import three_ways
 
 
@@ -31,6 +31,7 @@ BOTH = Layout(First, Second)
 get_first, put_first = BOTH.reader(First), BOTH.writer(First)
 get_second, put_second = BOTH.reader(Second), BOTH.writer(Second)
 pick_second = BOTH.picker(Second)
+view_first = BOTH.viewer(First)
 
 
 def test_a_layout_puts_records_one_after_the_other() -> None:
@@ -68,3 +69,54 @@ def test_records_three_ways() -> None:
     assert out[:5, 0].tolist() == [2.0, 0.5, 0.0 * 14.0, -1.0, 1.0]
     assert out[10:15, 0].tolist() == [12.0, 0.5, 10.0 * 4.0, 3.0, 4.0]
     assert out[15:, 1].tolist() == [13.125, 14.125]  # the second mission picks the third owner
+
+
+@compiled
+def sum_of(first: First) -> float:
+    """Of a record by value or by reference."""
+    return first.a + 10.0 * first.b + 100.0 * first.c
+
+
+def look_at(given: np.ndarray, out: np.ndarray) -> None:
+    """Read the same records by value, where they lie, and put aside."""
+    g, o = rows_of(given), rows_of(out)
+    for owner in range(3):
+        put_first(o, owner, get_first(g, owner))
+        seen, kept = view_first(o, owner), passing(get_first(o, owner))
+        store(o, 15 + owner, sum_of(seen) - sum_of(kept))
+        changed = First(seen.c, 2.0 * seen.b, seen.a)
+        put_first(o, owner, changed)
+        store(o, 18 + owner, sum_of(kept))
+        put_second(o, owner, Second(value_of(kept).a, sum_of(value_of(changed))))
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="compares compiled code with plain Python")
+def test_a_record_by_reference_three_ways() -> None:
+    given = np.arange(15.0)[:, None] + 0.125 * np.arange(WIDTH)
+    out = three_ways(look_at, given, 21)
+    assert (out[15:18] == 0.0).all()
+    assert out[18:21, 0].tolist() == [210.0, 765.0, 1320.0]  # what was put aside stays as it was
+    assert out[3, 0] == 0.0 and out[4, 0] == 2.0 + 10.0 * 2.0 + 100.0 * 0.0
+
+
+WIDER = Layout(Second, width=4)
+pick_wider = WIDER.picker(Second)
+
+
+def pick_all(given: np.ndarray, out: np.ndarray) -> None:
+    """Owners that lanes choose alike, apart, and not at all."""
+    g, o = rows_of(given), rows_of(out)
+    for k in range(3):
+        picked = pick_wider(g, load(g, 12 + k))
+        store(o, 2 * k, picked.d)
+        store(o, 2 * k + 1, picked.e)
+
+
+@pytest.mark.skipif(bool(config.DISABLE_JIT), reason="compares compiled code with plain Python")
+def test_owners_that_lanes_choose_three_ways() -> None:
+    table = np.arange(12.0)[:, None] + 100.0 * np.arange(WIDTH)
+    owners = np.array([[2.0] * WIDTH, np.resize([0.0, 2.0, 1.0], WIDTH), [np.nan] * WIDTH])
+    out = three_ways(pick_all, np.vstack([table, owners]), 6)
+    assert out[:2, 3].tolist() == [308.0, 309.0]
+    assert out[2:4, 1].tolist() == [108.0, 109.0]
+    assert out[4:, 5].tolist() == [500.0, 501.0]

@@ -284,10 +284,11 @@ def nearest_pair(fleet: Fleet, nearest: float, room: float) -> tuple[float, floa
         nearest: [m^2] until now.
         room: [m] that the last look left, less twice the longest step of each tick since.
     """
-    if some(negate(room > ROUNDING)):
+    is_due = negate(room > ROUNDING)
+    if some(is_due):
         now = nearest_now(fleet)
         nearest = where(now < nearest, now, nearest)
-        room = sqrt(now) - sqrt(nearest)
+        room = where(is_due, sqrt(now) - sqrt(nearest), room)
     return nearest, room
 
 
