@@ -16,7 +16,7 @@ from cardume.simulation.plan import Plan
 from cardume.simulation.score import SCORES, Deviation
 from flying import LAWS
 
-LOCAL = ("handles", "noise")  # addresses of this process; draws that one mission makes ahead, and eight do not
+LOCAL = ("handles", "noise", "aside")  # addresses of this process; draws that one mission makes ahead, and eight do not
 
 
 def plan_of(text: str, overrides: Sequence[str] = (), seed: int | None = None) -> Plan:

@@ -62,7 +62,7 @@ class Layout:
         return get
 
     def viewer(self, record: type[Any]) -> Callable[..., Any]:
-        """A function (table, owner) -> record by reference: compiled code finds what the table says when it is read."""
+        """A function (table, owner) -> record by reference, read before the table changes: plain Python has a copy."""
         width, start, size = self.width, self.offsets[record], len(record._fields)
         get = self.reader(record)
 

@@ -183,7 +183,8 @@ class Fleet(NamedTuple):
     timings: Rows  # (vehicle, sensor, Timing)
     keys: Rows  # (vehicle, stream, Key), then the fleet's own
     noise: Rows  # (vehicle, sensor, NOISE_WIDTH), then the fleet's own
-    past: Rows  # (vehicle, tick, SEEN), then of each vehicle the one that is looked at
+    past: Rows  # (vehicle, tick, SEEN)
+    aside: Rows  # (vehicle, SEEN) the one of them that a sensor looks at
     past_size: int  # [ticks] 1: no sensor looks back
     paths: Rows
     path_starts: Any  # Ints (vehicle,)
@@ -248,6 +249,7 @@ class Tables(NamedTuple):
     keys: np.ndarray
     noise: np.ndarray
     past: np.ndarray
+    aside: np.ndarray
     paths: np.ndarray
     path_starts: np.ndarray
     graph: np.ndarray
@@ -324,6 +326,7 @@ def fleet_of(tables: Tables) -> Fleet:
         rows_of(tables.keys),
         rows_of(tables.noise),
         rows_of(tables.past),
+        rows_of(tables.aside),
         whole.past_size,
         rows_of(tables.paths),
         rows_of(tables.path_starts),

@@ -28,12 +28,12 @@ def move(fleet: Fleet, vehicle: int, reference: Reference, water: Water, time: f
     held = get_held(fleet.vehicles, vehicle)
     held = held_aboard(fleet.faults.kinds, fleet, vehicle, held)
     reference = reference_in_fault(fleet.faults.kinds, fleet, vehicle, reference, time)
-    vessel = view_vessel(fleet.vehicles, vehicle)
     surge = get_speed(fleet.minds, vehicle).surge
     for step in range(fleet.substeps):
         command = steer(book, 0, feedback_of(held, surge, reference, step * dt))
         command = command_in_fault(fleet.faults.kinds, fleet, vehicle, command, time)
-        put_vessel(fleet.vehicles, vehicle, step_vehicle(book, 0, vessel, command, reference, water))
+        vessel = step_vehicle(book, 0, view_vessel(fleet.vehicles, vehicle), command, reference, water)
+        put_vessel(fleet.vehicles, vehicle, vessel)
         put_command(fleet.vehicles, vehicle, command)
 
 

@@ -159,9 +159,8 @@ def vessel_then(fleet: Fleet, vehicle: int, timing: Timing, now: int) -> VesselS
     """The state of a vehicle when the reading of this tick was valid, by reference: where it is kept, or copied to."""
     vessel = view_vessel(fleet.vehicles, vehicle)
     if some(timing.latency > 0.5):
-        aside = fleet.size * fleet.past_size + vehicle
-        put_past_vessel(fleet.past, aside, pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now)))
-        vessel = view_past_vessel(fleet.past, aside)
+        put_past_vessel(fleet.aside, vehicle, pick_past_vessel(fleet.past, past_row(fleet, vehicle, timing, now)))
+        vessel = view_past_vessel(fleet.aside, vehicle)
     return vessel
 
 
