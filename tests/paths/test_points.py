@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings, strategies as st
+from hypothesis import assume, given, reject, settings, strategies as st
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from scipy.special import fresnel
@@ -74,12 +74,22 @@ def test_spline_is_scipys(closed: bool) -> None:
 def test_splines_at_random_are_smooth(places: list[Center], closed: bool) -> None:
     ring = [*places, *places[: int(closed)]]
     assume(all(math.dist(a, b) > 5.0 for a, b in zip(ring, ring[1:], strict=False)))
-    path = spline(places, closed=closed)
+    try:
+        path = spline(places, closed=closed)
+    except GeometryError:  # points that double back
+        reject()
     place, course, curvature = largest_gap(path)
     tightest = max(max(map(abs, bends_of(s))) for s in path)
     assert place < 1e-9
     assert course < 1e-10
     assert curvature < 1e-7 * max(1.0, tightest * tightest * 1e3)
+
+
+@pytest.mark.parametrize("east", [6.0, 7.9924655180042805, 20.0])
+def test_a_spline_that_turns_back_on_itself_is_refused(east: float) -> None:
+    there = Center(0.0, east)
+    with pytest.raises(GeometryError, match=f"turns too sharply near north 0 m, east {east:.6g} m"):
+        spline([Center(0.0, 0.0), there, Center(0.0, 0.0)])
 
 
 def test_closed_spline_goes_round() -> None:

@@ -12,6 +12,7 @@ from cardume.paths.table import MAX_SEGMENTS
 
 MOST_TURNED = 1.0  # [rad] within a segment: the search for the foot of a vehicle counts on it
 HALVINGS = 24
+CUSP = 1e-9  # of the largest derivative: below it there is none
 ABSCISSAE, WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 
@@ -42,18 +43,14 @@ def trace(curve: Trace, ends: Sequence[float]) -> ReferencePath:
     Raises:
         GeometryError: a bend too sharp to describe, or too many segments.
     """
+    _refuse_cusps(curve, np.array(ends, float))
     found: list[Segment] = []
     waiting = [(a, b, 0) for a, b in zip(ends, ends[1:], strict=False)][::-1]
     while waiting:
         low, high, halvings = waiting.pop()
         piece = _piece(curve, low, high)
         if piece is None and halvings == HALVINGS:
-            north, east = curve.point(np.array([low]))[0]
-            raise GeometryError(
-                f"the {curve.label or 'curve'} turns too sharply near north {north:.6g} m, east {east:.6g} m:"
-                " move the points there apart, or leave one out",
-                curve.label,
-            )
+            raise _too_sharp(curve, low)
         if piece is None:
             middle = 0.5 * (low + high)
             waiting += [(middle, high, halvings + 1), (low, middle, halvings + 1)]
@@ -64,6 +61,22 @@ def trace(curve: Trace, ends: Sequence[float]) -> ReferencePath:
                 f"the {curve.label or 'curve'} needs more than {MAX_SEGMENTS} pieces: split the mission", curve.label
             )
     return tuple(found)
+
+
+def _refuse_cusps(curve: Trace, ends: np.ndarray) -> None:
+    """Where the derivative is 0 the curve turns back on itself: between two pieces, nobody else would see it."""
+    slopes = np.linalg.norm(curve.derivative(ends), axis=1)
+    for t in ends[slopes < CUSP * slopes.max()]:
+        raise _too_sharp(curve, float(t))
+
+
+def _too_sharp(curve: Trace, t: float) -> GeometryError:
+    north, east = curve.point(np.array([t]))[0]
+    return GeometryError(
+        f"the {curve.label or 'curve'} turns too sharply near north {north:.6g} m, east {east:.6g} m:"
+        " move the points there apart, or leave one out",
+        curve.label,
+    )
 
 
 def _lengths(curve: Trace, low: float, high: np.ndarray) -> np.ndarray:
