@@ -42,7 +42,7 @@ FAULTS = """faults=[
 def test_the_laws_that_flew_give_the_same_bits(tmp_path: Path, mission: str, overrides: tuple[str, ...]) -> None:
     log = flights.read(fly_to(tmp_path, mission, overrides))
     flight = log.flight
-    _, mets = flights.meet_again(log, [], lambda name: [])
+    _, mets = flights.meet_again(log, [], lambda name: [], directory=tmp_path)
     assert [met.name for met in mets] == list(flight.vehicle_names)
     for k, met in enumerate(mets):
         believed = play(met)
@@ -117,3 +117,18 @@ def test_what_cannot_be_asked_of_a_flight(tmp_path: Path) -> None:
     ):
         with pytest.raises(InputError, match=message):
             replay(Request(path=path, **asked))  # type: ignore[arg-type]
+
+
+def test_files_of_a_mission_are_found_from_the_log_wherever_one_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan, run, elsewhere = (tmp_path / name for name in ("plan", "run/deep", "elsewhere"))
+    for folder in (plan, run, elsewhere):
+        folder.mkdir(parents=True)
+    (plan / "path.geojson").write_text(
+        '{"type": "LineString", "coordinates": [[-9.1, 38.7], [-9.1, 38.7004]]}', encoding="utf-8"
+    )
+    log = fly_to(run, "paper/figure-5", ("duration=5 s", f"path={{type: file, file: {plan / 'path.geojson'}}}"))
+    monkeypatch.chdir(elsewhere)
+    found = replay(Request(path=log))
+    assert len(found.parts) == 3

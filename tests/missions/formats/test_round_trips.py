@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import assume, given, settings, strategies as st
 
 from cardume.errors import InputError
 from cardume.missions.formats import parse_plan
@@ -14,6 +14,7 @@ from cardume.missions.formats.content import FORMATS
 from cardume.missions.formats.plan import Fence, Member, Plan
 from cardume.missions.formats.writing import Written, write_plan
 from cardume.missions.geodesy import GeoPoint
+from cardume.paths.joining import ROUNDING
 from cardume.paths.lawnmower import lawnmower
 from cardume.paths.segment import ReferencePath, Segment, Start, end_of, length_of, point_on
 
@@ -135,9 +136,16 @@ def test_medusa_text_keeps_lines_as_lines_and_arcs_as_arcs(path: ReferencePath, 
     assert math.degrees(again.origin.latitude) == pytest.approx(origin[0], abs=1e-8)
 
 
+def is_of_rounding_size(before: Segment, after: Segment) -> bool:
+    """Whether a kink may come from writing points to the centimeter: no corner then, see `joining.py`."""
+    kink = math.remainder(after.course - before.course, 2.0 * math.pi)
+    return abs(kink) * min(before.length, after.length) <= 1.01 * ROUNDING
+
+
 @given(polylines(st.sampled_from([0.3, 0.5])), st.sampled_from(ORIGINS[:4]))
 @settings(max_examples=30)
 def test_medusa_text_keeps_corners(path: ReferencePath, origin: tuple[float, float]) -> None:
+    assume(not any(is_of_rounding_size(*joint) for joint in zip(path, path[1:], strict=False)))
     again, _ = written(plan(path, origin), "medusa")
     assert corners(again.segments) == pytest.approx(corners(path), abs=MILLIMETER)
     assert [s.speed for s in again.segments] == [s.speed for s in path]

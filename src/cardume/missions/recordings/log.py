@@ -6,6 +6,7 @@ bits: each vehicle's readings and messages are taken out of a second flight, and
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,15 @@ Progress = Callable[[str, int, int], None]
 STEPS = 100  # ticks between two words about the progress
 
 
+def directory_of(path: Path) -> Path:
+    """The folder that a log lies in.
+
+    Args:
+        path: of a log.nc, or of the directory of a run.
+    """
+    return path if path.is_dir() else path.parent
+
+
 def read(path: Path) -> Log:
     """The log of a run.
 
@@ -56,6 +66,7 @@ def meet_again(
     names: Sequence[str],
     overrides: Callable[[str], Sequence[str]],
     *,
+    directory: Path,
     more: Sequence[str] = (),
     allow_code: Sequence[str | Path] = (),
     progress: Progress = lambda stage, done, total: None,
@@ -66,6 +77,7 @@ def meet_again(
         log: of the flight.
         names: of the vehicles wanted; none: all.
         overrides: of the replay's mission, as `--set` gives them, by the name of a vehicle.
+        directory: of the log, to which the files that its mission names are relative.
         more: of them, for the whole mission.
         allow_code: folders from which the mission's own laws may be imported.
         progress: called with "compile" or "fly", how much is done, and how much there is.
@@ -83,9 +95,10 @@ def meet_again(
                 f"--vehicle {printable(name)}: {unknown('no such vehicle', name, [*flight.vehicle_names])}"
             )
     wanted = [name for name in flight.vehicle_names if name in names or not names]
-    flown = replace(parse_mission(log.mission, known, source="the log"), seed=flight.seed)
+    read_mission = partial(parse_mission, log.mission, known, source="the log", directory=directory)
+    flown = replace(read_mission(), seed=flight.seed)
     changes = [*more, *(change for name in wanted for change in overrides(name))]
-    replayed = replace(parse_mission(log.mission, known, changes, source="the log"), seed=flight.seed)
+    replayed = replace(read_mission(overrides=changes), seed=flight.seed)
     plan, judged = make_plan(flown, known).plan, make_plan(replayed, known).plan
     if judged.tick != plan.tick or [v.name for v in judged.vehicles] != [v.name for v in plan.vehicles]:
         raise InputError("the tick and the vehicles of a flight cannot be changed by --set; fly it with them")

@@ -108,7 +108,13 @@ def _replay_log(request: Request, progress: Progress) -> Replay:
         return _settings(keys[0], request.position) + _settings(keys[1], request.current_observer)
 
     mission, mets = flights.meet_again(
-        log, request.vehicles, overrides, more=request.overrides, allow_code=request.allow_code, progress=progress
+        log,
+        request.vehicles,
+        overrides,
+        directory=flights.directory_of(request.path),
+        more=request.overrides,
+        allow_code=request.allow_code,
+        progress=progress,
     )
     return Replay(
         name=name_of(request.path),
