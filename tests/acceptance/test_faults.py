@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -33,6 +34,9 @@ from cardume.missions.drawing import draw
 from cardume.missions.faults import FAULTS, REACTIONS
 from cardume.missions.loading import parse_mission
 from cardume.missions.planning import make_plan
+from cardume.missions.results import choose_destination, write_results
+from cardume.missions.runs import Run, read_run
+from cardume.report.page.page import make_page
 from cardume.report.words import meaning
 from cardume.signals import VesselState
 from cardume.simulation.fleet import VEHICLE
@@ -186,5 +190,23 @@ def test_the_report_says_what_went_wrong_and_what_was_found_of_it() -> None:
     case = next(c for c in CASES if c.kind == "sensor_frozen" and "ahrs" in c.fault)
     mission = parse_mission(case.text, catalog())
     told = meaning(flown(case), mission, ())
-    assert "As scheduled, port: its AHRS freezes until 160 s (at 100 s)." in told
+    assert "As scheduled, port: its AHRS freezes (100 to 160 s)." in told
     assert "port did not believe its AHRS." in told
+
+
+def test_a_run_with_faults_has_the_same_page_when_it_is_read_back(tmp_path: Path) -> None:
+    case = next(c for c in CASES if c.kind == "sensor_frozen" and "ahrs" in c.fault)
+    mission = parse_mission(case.text, catalog())
+    directory, _ = write_results(choose_destination(mission.name, tmp_path / "run"), mission, flown(case), version="0")
+    found = read_run(directory)
+    assert [event for event in found.flight.events if event.what.startswith("fault: ")]
+    again = Run(
+        flight=flown(case),
+        mission=mission,
+        text=found.text,
+        version="0",
+        verdicts=found.verdicts,
+        duration=mission.duration,
+        transient=mission.transient,
+    )
+    assert make_page(found) == make_page(again)

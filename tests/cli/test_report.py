@@ -14,7 +14,7 @@ from cardume.missions.runs import Run, read_run
 from cardume.simulation.flight import Flight
 from cli.stand_ins import Result
 from report.runs import kept_run
-from report.synthetic import make_flight, without_settling
+from report.synthetic import make_flight, with_faults, without_settling
 
 Cardume = Callable[..., Result]
 
@@ -38,7 +38,9 @@ def same(first: Any, second: Any) -> bool:
     return bool(first == second or (first != first and second != second))
 
 
-@pytest.mark.parametrize("flight", [make_flight(num_rows=71), without_settling(make_flight(num_rows=11), "port")])
+@pytest.mark.parametrize(
+    "flight", [make_flight(num_rows=71), without_settling(make_flight(num_rows=11), "port"), with_faults()]
+)
 def test_a_run_read_back_equals_what_was_flown(tmp_path: Path, flight: Flight) -> None:
     found = read_run(kept_run(tmp_path / "run", flight)).flight
     for field in fields(Flight):
@@ -47,6 +49,19 @@ def test_a_run_read_back_equals_what_was_flown(tmp_path: Path, flight: Flight) -
     assert same(dict(found.metrics.fleet), dict(flight.metrics.fleet))
     assert same(dict(found.metrics.vehicles), dict(flight.metrics.vehicles))
     assert same({k: np.asarray(v, float) for k, v in found.messages.items()}, dict(flight.messages))
+
+
+def test_a_summary_without_events_or_ends_of_them_is_read(tmp_path: Path) -> None:
+    directory = kept_run(tmp_path / "run", with_faults())
+    file = directory / "summary.json"
+    summary = json.loads(file.read_text())
+    for event in summary["events"]:
+        del event["until"]
+    file.write_text(json.dumps(summary))
+    assert [event.what for event in read_run(directory).flight.events] == [event.what for event in with_faults().events]
+    del summary["events"]
+    file.write_text(json.dumps(summary))
+    assert read_run(directory).flight.events == ()
 
 
 def test_the_page_goes_into_the_run_and_is_listed_there(run_folder: Path, cardume: Cardume) -> None:

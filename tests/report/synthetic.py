@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cardume.simulation.flight import CHANNELS, METRICS, Flight, Metrics
+from cardume.simulation.flight import CHANNELS, METRICS, Event, Flight, Metrics
 
 LEG, RADIUS, LEGS, SPEED = 60.0, 12.0, 4, 0.5
 OFFSETS = {"surface": 0.0, "port": -3.0, "starboard": 3.0}
@@ -111,6 +111,18 @@ def make_flight(num_rows: int = 701, names: tuple[str, ...] = tuple(OFFSETS), se
         reference_path=lawnmower(curve, 0.0)[:, :2],
         own_paths=tuple(lawnmower(curve, offset)[:, :2] for offset in offsets),
     )
+
+
+def with_faults() -> Flight:
+    """A flight in which a modem is silent for a while, the current turns for good, and packets are counted at the end."""
+    flight = make_flight()
+    events = (
+        Event(60.0, "port", "fault: its modem falls silent", 100.0),
+        Event(80.0, "port", "does not believe its AHRS"),
+        Event(120.0, "", "fault: the current turns", 1e6),
+        Event(130.0, "port", "fault: of 5 packets forged in its name 0 were taken for genuine"),
+    )
+    return replace(flight, events=events)
 
 
 def with_certainty(flight: Flight) -> Flight:

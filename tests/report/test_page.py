@@ -12,15 +12,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+from cardume.report.fault_lanes import MOST_LANES as MOST_FAULTS
 from cardume.report.message_lanes import links
 from cardume.report.page import frame as pages
 from cardume.report.page.frame import LibraryMissing
 from cardume.report.page.page import make_page, write_page
 from cardume.report.page.series import BOTTOM, LANE_PRINTED, LANES_PRINTED, MOST_LANES, TOP, series_view
 from cardume.report.page.store import MOST_CELLS, Store, packed
-from cardume.simulation.flight import CERTAINTY, CHANNELS, MESSAGE_COLUMNS, Flight
+from cardume.simulation.flight import CERTAINTY, CHANNELS, MESSAGE_COLUMNS, Event, Flight
 from report.runs import HOSTILE, hostile_run, make_run
-from report.synthetic import make_flight, with_certainty
+from report.synthetic import make_flight, with_certainty, with_faults
 from report.test_figures import odd_flights
 
 LIMIT = 8_000_000  # [bytes] of a mail attachment
@@ -138,6 +139,38 @@ def test_the_same_run_gives_the_same_page(text: str) -> None:
 def test_any_flight_has_a_page(name: str) -> None:
     text = make_page(make_run(odd_flights()[name]))
     assert numbers(text)["vehicles"]
+
+
+def test_faults_have_a_lane_a_shade_and_a_word_as_long_as_they_last() -> None:
+    flight = with_faults()
+    page = numbers(make_page(make_run(flight)))
+    end = flight.flown
+    assert [(mark["begin"], mark["end"]) for mark in page["faults"]] == [(60.0, 100.0), (120.0, end)]
+    assert page["faults"][0]["words"] == "port: its modem falls silent (60 to 100 s)"
+    assert page["faults"][1]["words"] == "the current turns (from 120 s on)"
+    layout, data = (page["figures"]["series"][what] for what in ("layout", "data"))
+    shades = [shape for shape in layout["shapes"] if shape["type"] == "rect"]
+    assert [(shade["x0"], shade["x1"]) for shade in shades] == [(60.0, 100.0), (120.0, end)]
+    bars = [trace for trace in data if trace.get("line", {}).get("width") == 5]
+    assert [bar["x"] for bar in bars] == [[60.0, 100.0], [120.0, end]]
+    axes = {bar["yaxis"] for bar in bars}
+    assert len(axes) == 1
+    assert not [trace for trace in data if trace["yaxis"] in axes and trace["mode"] == "markers"]
+
+
+def test_a_flight_without_faults_has_no_lane_for_them(text: str) -> None:
+    page = numbers(text)
+    assert not page["faults"]
+    assert "Faults" not in json.dumps(page["figures"]["series"]["layout"])
+
+
+def test_of_many_faults_the_first_have_lanes_and_all_a_shade() -> None:
+    flight = with_faults()
+    many = tuple(Event(10.0 + k, "port", "fault: its modem falls silent", 11.0 + k) for k in range(MOST_FAULTS + 5))
+    series = series_view(Store(replace(flight, events=many)), {})
+    assert sum(trace.get("line", {}).get("width") == 5 for trace in series["data"]) == MOST_FAULTS
+    assert sum(shape["type"] == "rect" for shape in series["layout"]["shapes"]) == len(many)
+    assert f"the first {MOST_FAULTS} of {len(many)}" in json.dumps(series["layout"]["annotations"])
 
 
 def test_the_verdict_comes_first(text: str) -> None:

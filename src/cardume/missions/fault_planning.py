@@ -93,11 +93,9 @@ class _Planner:
         self, kind: int, says: str, sensor: int = -1, weakness: Weakness = Weakness(), **numbers: float
     ) -> FaultPlan:
         begin, end, tick = self.fault.from_, self._end(), self.mission.tick
-        until = f" until {show_quantity(end, 's')}" if end < self.mission.duration else ""
         # as the engine counts time, so that begin and end fall on ticks
         window = {"begin": round(begin / tick) * tick, "end": round(end / tick) * tick}
-        said = f"{says}{until}" if says else ""
-        return FaultPlan(kind, self.fault.vehicle, Fault(**window, **numbers), sensor, weakness, said)
+        return FaultPlan(kind, self.fault.vehicle, Fault(**window, **numbers), sensor, weakness, says)
 
     def _end(self) -> float:
         begin, end, lasts = self.fault.from_, self.fault.to, self.fault.lasts

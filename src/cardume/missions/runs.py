@@ -11,7 +11,7 @@ from cardume.missions.log import Log, read_log
 from cardume.missions.mission import Mission, Transient
 from cardume.missions.source import parse_yaml
 from cardume.missions.summary import Verdict, judge, read_summary
-from cardume.simulation.flight import METRICS, Flight, Metrics
+from cardume.simulation.flight import METRICS, Event, Flight, Metrics
 from cardume.units import parse_quantity, printable
 
 LOG_NAME = "log.nc"
@@ -78,7 +78,12 @@ def read_run(given: Path, allow_code: Iterable[str | Path] = ()) -> Run:
     summary = read_summary(directory)
     try:
         verdicts = tuple(_verdict(found) for found in summary["requirements"])
-        flight = replace(log.flight, metrics=_metrics(summary), wall_seconds=_number(summary["wall_seconds"]))
+        flight = replace(
+            log.flight,
+            metrics=_metrics(summary),
+            wall_seconds=_number(summary["wall_seconds"]),
+            events=tuple(_event(found) for found in summary.get("events", ())),  # older summaries have none
+        )
         return Run(
             flight=flight,
             mission=_mission(log, directory, allow_code),
@@ -127,6 +132,10 @@ def _metrics(summary: Mapping[str, Any]) -> Metrics:
 def _verdict(found: Mapping[str, Any]) -> Verdict:
     verdict = Verdict(**found)
     return verdict._replace(wanted=_number(verdict.wanted), got=_number(verdict.got))
+
+
+def _event(found: Mapping[str, Any]) -> Event:
+    return Event(float(found["time"]), str(found["vehicle"]), str(found["what"]), _number(found.get("until")))
 
 
 def _number(value: float | None) -> float:

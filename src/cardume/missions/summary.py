@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from cardume.errors import DataError
 from cardume.missions.mission import Requirement
-from cardume.simulation.flight import METRICS, Flight, Limit, Metrics
+from cardume.simulation.flight import METRICS, Event, Flight, Limit, Metrics
 from cardume.units import printable
 
 FORMAT_VERSION = 1
@@ -135,12 +135,16 @@ def summarize(
         "flown": _plain(flight.flown),
         "wall_seconds": _plain(flight.wall_seconds),
         "requirements": [_requirement(verdict) for verdict in verdicts],
-        "events": [event._asdict() for event in flight.events],
+        "events": [_event(event) for event in flight.events],
         "fleet": _numbers(fleet),
         "vehicles": {name: _numbers(flight.metrics.vehicles.get(name, {})) for name in flight.vehicle_names},
         "units": {name: METRICS[name].unit for name in names},
         "files": list(files),
     }
+
+
+def _event(event: Event) -> dict[str, Any]:
+    return event._asdict() | {"until": _plain(event.until)}
 
 
 def to_json(summary: Mapping[str, Any]) -> str:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cardume.report import style
+from cardume.report.fault_lanes import fault_handles, shade_faults
 from cardume.simulation.flight import Flight
 
 PANEL, TOP, BOTTOM, LEFT, RIGHT = 1.15, 0.25, 0.45, 0.75, 0.15  # [inch]
@@ -38,7 +39,7 @@ def draw_panels(flight: Flight, candidates: Sequence[Panel], width: float) -> An
     """
     with style.styled():
         panels = [panel for panel in candidates if panel.matters(flight)] or list(candidates[:1])
-        handles = style.vehicle_handles(flight.vehicle_names)
+        handles = [*style.vehicle_handles(flight.vehicle_names), *fault_handles(flight)]
         columns = style.columns(handles, width - LEFT)
         top = TOP + style.ROW * math.ceil(len(handles) / columns)
         height = top + BOTTOM + len(panels) * PANEL + (len(panels) - 1) * GAP
@@ -50,6 +51,7 @@ def draw_panels(flight: Flight, candidates: Sequence[Panel], width: float) -> An
             last = figure.add_axes(box, sharex=last)
             _prepare(last, panel, is_lowest=k == len(panels) - 1)
             last.yaxis.set_label_coords(-0.44 / (width - LEFT - RIGHT), 0.5)
+            shade_faults(last, flight)
             panel.draw(last, flight, rows)
             _clip_transient(last, flight)
         place = (LEFT / width, 1 - 0.08 / height)

@@ -8,6 +8,7 @@ import numpy as np
 
 from cardume.missions.mission import Transient
 from cardume.missions.summary import Verdict, is_met
+from cardume.report.fault_lanes import lasting
 from cardume.report.table import number, share_heard
 from cardume.simulation.flight import DOUBTS, FAULT, Event, Flight
 
@@ -95,7 +96,10 @@ def _ending(flight: Flight, mission: Planned) -> str:
 def _gone_wrong(flight: Flight) -> Iterator[str]:
     """What was scheduled to go wrong, and what the vehicles found of it."""
     faults = [event for event in flight.events if event.what.startswith(FAULT)]
-    shown = [f"{f'{event.vehicle}: ' if event.vehicle else ''}{_happened(event)}" for event in faults[:MOST_FAULTS]]
+    shown = [
+        f"{f'{event.vehicle}: ' if event.vehicle else ''}{_happened(event, flight.flown)}"
+        for event in faults[:MOST_FAULTS]
+    ]
     if len(faults) > MOST_FAULTS:
         shown.append(f"and {len(faults) - MOST_FAULTS} more, among the events of the summary")
     if shown:
@@ -105,8 +109,10 @@ def _gone_wrong(flight: Flight) -> Iterator[str]:
             yield f"From {event.time:g} s {event.vehicle} did not believe{event.what.removeprefix(DOUBTS)}."
 
 
-def _happened(event: Event) -> str:
-    return f"{event.what.removeprefix(FAULT)} (at {event.time:g} s)"
+def _happened(event: Event, flown: float) -> str:
+    lasted = math.isfinite(event.until)
+    when = lasting(event.time, event.until, flown) if lasted else f"at {event.time:g} s"
+    return f"{event.what.removeprefix(FAULT)} ({when})"
 
 
 def _given_up(flight: Flight) -> Iterator[str]:
@@ -136,10 +142,13 @@ def _keeping(flight: Flight, mission: Planned) -> Iterator[str]:
     alone = len(flight.vehicle_names) == 1
     who_reached = "The vehicle reached its path" if alone else "Every vehicle reached its path"
     after = f"after {last:.0f} s" if alone else f"the last ({who}) after {last:.0f} s"
+    reached = f"{who_reached}, {after},"
+    if last < 0.5:  # would be told as 0 s
+        reached = "The vehicle began on its path" if alone else "Every vehicle began on its path"
     if math.isnan(often):
-        yield f"{who_reached}, {after}."
+        yield f"{reached.removesuffix(',')}."
         return
-    yield f"{who_reached}, {after}, and from then on was within {number(often)} m of it 95 % of the time."
+    yield f"{reached} and from then on was within {number(often)} m of it 95 % of the time."
     yield from _cause(flight)
 
 

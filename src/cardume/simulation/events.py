@@ -54,7 +54,9 @@ def events_of(flown: Flown) -> tuple[Event, ...]:
             found += [Event(round(time, 6), vehicle.name, what) for time, what in _told(journal)]
         if plan.faults:
             found += [Event(round(time, 6), vehicle.name, what) for time, what in _doubted(minds[row])]
-    found += [_began(fault, plan.tick) for fault in plan.faults if fault.says and fault.numbers.begin < plan.duration]
+    found += [
+        _began(fault, plan.duration) for fault in plan.faults if fault.says and fault.numbers.begin < plan.duration
+    ]
     found += _packets(flown)
     if plan.is_watched:
         for limit in (*limits_of(flown), *separation_of(flown)):
@@ -63,8 +65,9 @@ def events_of(flown: Flown) -> tuple[Event, ...]:
     return tuple(sorted(found))
 
 
-def _began(fault: FaultPlan, tick: float) -> Event:
-    return Event(round(fault.numbers.begin, 6), fault.vehicle or "", f"{FAULT}{fault.says}")
+def _began(fault: FaultPlan, duration: float) -> Event:
+    begin, end = round(fault.numbers.begin, 6), round(min(fault.numbers.end, duration), 6)
+    return Event(begin, fault.vehicle or "", f"{FAULT}{fault.says}", end)
 
 
 def _packets(flown: Flown) -> list[Event]:

@@ -85,6 +85,7 @@ class Event(NamedTuple):
     time: float  # [s]
     vehicle: str
     what: str
+    until: float = np.nan  # [s] when it ended, of a fault; NaN: it did not last
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,6 +12,7 @@ from cardume.missions.atomic import write_file
 from cardume.missions.runs import Run
 from cardume.report.ellipse import BOUND, vehicles_with_certainty
 from cardume.report.limits import limits_of
+from cardume.report.page.faults import fault_marks
 from cardume.report.page.frame import Subject, framed, part
 from cardume.report.page.plan_view import arrow_scale, plan_view
 from cardume.report.page.series import series_view
@@ -109,6 +110,7 @@ def _contents(store: Store, figures: Mapping[str, Any]) -> dict[str, Any]:
         "messages": pack_messages(flight),
         "slowest": float(known.max()) if known.size else 0.0,  # [s] on the way
         "start": float(store.times[len(store.times) // 3]) if len(store.times) else 0.0,
+        "faults": fault_marks(flight),
         "store": store.contents(),
     }
 
@@ -117,7 +119,7 @@ def _numbers_note(flight: Flight) -> str:
     if len(flight.vehicle_names) == 1:
         return "After the transient; the figures of merit are explained by <code>cardume list metrics</code>."
     return (
-        "Fleet: the worst vehicle; coord.: largest difference along the reference path. "
+        "Fleet: the worst vehicle; coordination: largest difference along the reference path. "
         "After the transient; explained by <code>cardume list metrics</code>."
     )
 

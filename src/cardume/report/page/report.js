@@ -175,6 +175,24 @@
       values.forEach(([value, digits], row) => { rows[row].cells[k + 1].textContent = shown(value, digits); });
     }
   };
+  // What goes wrong at this instant, in words below the numbers; and a mark below the slider while each fault lasts.
+  const tellFaults = () => {
+    const told = report.faults.filter(({ begin, end }) => begin <= time && time < end);
+    byId("faults").hidden = !told.length;
+    byId("faults").replaceChildren(...told.map(({ words, color }) => {
+      const item = document.createElement("li");
+      item.textContent = words;
+      item.style.borderColor = color;
+      return item;
+    }));
+  };
+  const markFaults = () => byId("marks").replaceChildren(...report.faults.map(({ begin, end, color }) => {
+    const mark = document.createElement("i");
+    mark.style.left = `${(100 * begin) / last}%`;
+    mark.style.width = `${(100 * (end - begin)) / last}%`;
+    mark.style.background = color;
+    return mark;
+  }));
   const setTime = (wanted, isFinal = true) => {
     if (!times.length) return;
     time = Math.min(last, Math.max(0, wanted));
@@ -185,6 +203,7 @@
     slider.setAttribute("aria-valuetext", text);
     const { now, traces } = moved(time);
     fillTable(now);
+    tellFaults();
     moveCursor();
     if (isFinal || isVisible("plan")) update("plan", traces, now.heading.map((angle) => (angle * 180) / Math.PI));
     if (isFinal || isVisible("space")) update("space", traces);
@@ -257,6 +276,7 @@
     const speeds = [...byId("speed").options].map((option) => Number(option.value));
     byId("speed").value = speeds.reduce((best, s) => (Math.abs(Math.log(s / usual)) < Math.abs(Math.log(best / usual)) ? s : best));
     listen();
+    markFaults();
     setTime(report.start);
     document.body.dataset.ready = "yes";
   };

@@ -5,7 +5,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cardume.report.fault_lanes import MOST_LANES as MOST_FAULTS, fault_spans
 from cardume.report.message_lanes import links
+from cardume.report.page.faults import fault_annotations, fault_shapes, fault_traces
 from cardume.report.page.layout import axis, base_layout
 from cardume.report.page.store import GRAY, TIMES, Store, color, plotly_text
 from cardume.report.page.talk import lane_annotations, lane_layout, lane_traces
@@ -13,6 +15,7 @@ from cardume.simulation.flight import Flight
 
 PANEL, GAP, TOP, BOTTOM = 118, 40, 60, 50  # [pixel]
 LANE = 52  # [pixel] of the message timeline, per link
+FAULT_LANE = 34  # [pixel] per fault
 MOST_LANES = 24
 PRINTED = {"width": 680, "height": 925}  # [pixel] of the chart on a page of A4, 96 to the inch
 LANE_PRINTED, LANES_PRINTED = 30, 0.35  # [pixel] of a lane on paper, as far as all take no larger share of the chart
@@ -54,8 +57,10 @@ def series_view(store: Store, limits: Limits) -> dict[str, Any]:
     flight = store.flight
     derive(store)
     panels = chosen_panels(flight)
-    lanes = links(flight)[:MOST_LANES]
-    heights: list[int] = [PANEL] * len(panels) + ([LANE * len(lanes)] if lanes else [])
+    lanes, faults = links(flight)[:MOST_LANES], fault_spans(flight)[:MOST_FAULTS]
+    heights: list[int] = [PANEL] * len(panels)
+    heights += [FAULT_LANE * len(faults)] if faults else []
+    heights += [LANE * len(lanes)] if lanes else []
     height = TOP + BOTTOM + sum(heights) + GAP * (len(heights) - 1)
     layout = base_layout() | {
         "height": height,
@@ -64,7 +69,7 @@ def series_view(store: Store, limits: Limits) -> dict[str, Any]:
         "hoversubplots": "axis",
         "dragmode": "zoom",
         "legend": {"orientation": "h", "x": 0, "y": 1 + 26 / (height - TOP - BOTTOM), "yanchor": "bottom"},
-        "shapes": [],
+        "shapes": fault_shapes(flight),
         "annotations": [],
         "xaxis": _time_axis(store, len(heights)),
     }
@@ -73,8 +78,12 @@ def series_view(store: Store, limits: Limits) -> dict[str, Any]:
     for place, domain in enumerate(domains, start=1):
         if place <= len(panels):
             _add_panel(data, layout, store, (panels[place - 1], place, domain), limits)
+        elif faults and place == len(panels) + 1:
+            layout[_axis_name(place)] = lane_layout(len(faults)) | {"domain": domain}
+            layout["annotations"] += fault_annotations(flight, place)
+            data += fault_traces(flight, f"y{place}")
         else:
-            layout[_axis_name(place)] = lane_layout(lanes) | {"domain": domain}
+            layout[_axis_name(place)] = lane_layout(len(lanes)) | {"domain": domain}
             layout["annotations"] += lane_annotations(place)
             data += lane_traces(flight, lanes, f"y{place}")
     printed = PRINTED | {"domains": _domains(_heights_on_paper(heights, len(lanes)))}

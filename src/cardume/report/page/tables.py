@@ -49,7 +49,7 @@ def requirements_table(verdicts: Sequence[Verdict]) -> str:
 
 
 def _requirement(verdict: Verdict) -> str:
-    name = verdict.metric.replace("_", " ")
+    name = verdict.metric.replace("cross_track", "cross-track").replace("_", " ")
     of = f"{verdict.vehicle}: {name}" if verdict.vehicle else name
     got = f"{verdict.got:.4g}{NO_BREAK}{verdict.unit}" if math.isfinite(verdict.got) else "no value"
     if verdict.worst and not verdict.vehicle:

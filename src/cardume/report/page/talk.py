@@ -11,13 +11,13 @@ from cardume.simulation.flight import Flight
 TALL, BASE, LABEL = 0.26, 0.2, -0.28  # [lane] of a tick, where it stands, and the words above
 
 
-def lane_layout(lanes: list[tuple[int, int]]) -> dict[str, Any]:
-    """The axis of the lanes, the first on top; its labels are the lanes' own.
+def lane_layout(count: int) -> dict[str, Any]:
+    """The axis of so many lanes, the first on top; its labels are the lanes' own.
 
     Args:
-        lanes: sender and receiver.
+        count: of lanes.
     """
-    return {"range": [len(lanes) - 0.5, -0.5], "showticklabels": False, "ticks": "", "zeroline": False, "nticks": 2}
+    return {"range": [count - 0.5, -0.5], "showticklabels": False, "ticks": "", "zeroline": False, "nticks": 2}
 
 
 def lane_annotations(place: int) -> list[dict[str, Any]]:

@@ -11,6 +11,7 @@ from cardume.report.study.influences import all_influences
 from cardume.report.study.page.plotting import (
     BLUE,
     LINE,
+    PALE,
     RED,
     Chart,
     Trace,
@@ -84,8 +85,8 @@ def influence_charts(results: Results) -> list[Chart]:
 
 def _influence(found: Influences) -> Chart:
     inputs, data = found.inputs[:MOST_INPUTS], []
-    kinds = ("alone", [one.first for one in inputs], 1.0), ("with others", [one.total for one in inputs], 0.5)
-    for name, shares, opacity in kinds:
+    kinds = ("alone", [one.first for one in inputs], BLUE), ("with others", [one.total for one in inputs], PALE)
+    for name, shares, shade in kinds:
         values, low, high = 100.0 * np.array([tuple(share) for share in shares]).T
         data.append(
             {
@@ -94,7 +95,7 @@ def _influence(found: Influences) -> Chart:
                 "name": name,
                 "x": plain(values),
                 "y": list(range(len(inputs))),
-                "marker": {"color": BLUE, "opacity": opacity},
+                "marker": {"color": shade},
                 "error_x": bars_of(values, low, high, LINE, 3.0),
                 "hovertemplate": f"%{{x:.3~g}} %<extra>{name}</extra>",
             }

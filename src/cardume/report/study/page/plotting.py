@@ -13,6 +13,7 @@ Chart = dict[str, Any]
 Trace = dict[str, Any]
 LINE = "#808080"
 BLUE, RED = style.PALETTE[0], style.PALETTE[1]
+PALE = "#80B8D8"  # a lighter blue, for what stands beside blue bars
 
 
 def chart(title: str, data: list[Trace], **layout: Any) -> Chart:
