@@ -114,7 +114,7 @@ def make_flight(num_rows: int = 701, names: tuple[str, ...] = tuple(OFFSETS), se
 
 
 def with_faults() -> Flight:
-    """A flight in which a modem is silent for a while, the current turns for good, and packets are counted at the end."""
+    """A flight in which a modem is silent for a while, the current turns for good, and packets are counted."""
     flight = make_flight()
     events = (
         Event(60.0, "port", "fault: its modem falls silent", 100.0),

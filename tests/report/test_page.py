@@ -176,7 +176,7 @@ def test_of_many_faults_the_first_have_lanes_and_all_a_shade() -> None:
 def test_the_verdict_comes_first(text: str) -> None:
     body = text.partition("<body>")[2]
     places = [
-        body.index(word) for word in ("Requirements met", "cross track rms", "Numbers", 'id="plan"', "mission.yaml")
+        body.index(word) for word in ("Requirements met", "cross-track rms", "Numbers", 'id="plan"', "mission.yaml")
     ]
     assert places == sorted(places)
     failed = make_page(make_run(replace(make_flight(num_rows=71), reason="failed", failure="the state was no number")))

@@ -96,10 +96,7 @@ def _ending(flight: Flight, mission: Planned) -> str:
 def _gone_wrong(flight: Flight) -> Iterator[str]:
     """What was scheduled to go wrong, and what the vehicles found of it."""
     faults = [event for event in flight.events if event.what.startswith(FAULT)]
-    shown = [
-        f"{f'{event.vehicle}: ' if event.vehicle else ''}{_happened(event, flight.flown)}"
-        for event in faults[:MOST_FAULTS]
-    ]
+    shown = [_happened(event, flight.flown) for event in faults[:MOST_FAULTS]]
     if len(faults) > MOST_FAULTS:
         shown.append(f"and {len(faults) - MOST_FAULTS} more, among the events of the summary")
     if shown:
@@ -112,7 +109,8 @@ def _gone_wrong(flight: Flight) -> Iterator[str]:
 def _happened(event: Event, flown: float) -> str:
     lasted = math.isfinite(event.until)
     when = lasting(event.time, event.until, flown) if lasted else f"at {event.time:g} s"
-    return f"{event.what.removeprefix(FAULT)} ({when})"
+    who = f"{event.vehicle}: " if event.vehicle else ""
+    return f"{who}{event.what.removeprefix(FAULT)} ({when})"
 
 
 def _given_up(flight: Flight) -> Iterator[str]:
