@@ -11,6 +11,7 @@ import pytest
 import cardume
 from cardume.errors import InputError
 from cardume.missions.available import catalog
+from cardume.missions.drawing import draw
 from cardume.missions.loading import parse_mission
 from cardume.missions.mission import Mission
 from cardume.missions.results import choose_destination
@@ -123,6 +124,47 @@ def test_an_arm_that_fails_is_told_and_the_others_stand(tmp_path: Path) -> None:
     assert [seed for seed, _ in found.failures(1)] == [1, 2]
     assert "reference of vehicle a" in found.failures(1)[0][1]
     assert np.isnan(found.values("cross_track_rms")[1]).all()
+
+
+DRAWN_PATH = """
+cardume: 1
+name: narrow
+duration: 30 s
+path:
+  {type: lawnmower, start: {north: 0, east: 0, course: 0},
+   leg: 60, legs: 4, turn: starboard, spacing: {uniform: [1, 24]}}
+formation: {speed: 0.5 m/s}
+vehicles: [{name: a, offset: {starboard: -3 m}, start: {north: 0, east: -2.5, heading: 0}}]
+model: kinematic
+"""  # too narrow for the offset where the spacing drawn is below 6 m
+
+
+def test_a_seed_that_draws_what_does_not_fit_is_told_and_the_others_stand() -> None:
+    found = cardume.compare(read(DRAWN_PATH), LAWS, runs=12)
+    assert len(found.seeds) == 12
+    for arm in range(2):
+        refused = [seed for seed, _ in found.failures(arm)]
+        assert refused == [seed for seed in found.seeds if not fits(seed)]
+        assert 0 < len(refused) < 12
+        assert all("does not fit" in why for _, why in found.failures(arm))
+        has = ~np.isnan(found.values("cross_track_max")[arm])
+        assert has.tolist() == [seed not in refused for seed in found.seeds]
+
+
+def test_a_mission_that_no_seed_lets_fly_is_refused_before_any_flies() -> None:
+    stages: list[str] = []
+    with pytest.raises(InputError, match="does not fit"):
+        cardume.compare(
+            read(DRAWN_PATH, "path.spacing={uniform: [1 m, 2 m]}"),
+            LAWS,
+            runs=3,
+            progress=lambda stage, done, total: stages.append(stage),
+        )
+    assert not stages
+
+
+def fits(seed: int) -> bool:
+    return draw(read(DRAWN_PATH), seed).path.spacing >= 6.0
 
 
 def test_what_was_flown_before_a_stop_is_compared() -> None:

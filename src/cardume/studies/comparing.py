@@ -13,7 +13,7 @@ from cardume.missions.mission import Mission
 from cardume.simulation.flight import METRICS
 from cardume.studies.arms import Arm, Given, as_text, check_metrics, make_arms
 from cardume.studies.constants import DEFAULT_COMPARED, FLEET, LARGEST_SEED, MOST_COMPARED, TRIFLE, USUAL
-from cardume.studies.flying import Progress, RunTable, fly_all
+from cardume.studies.flying import Progress, RunTable, able_places, fly_all
 from cardume.studies.statistics import CONFIDENCE, Estimate, estimate, is_clear, paired_difference, shared_confidence
 
 
@@ -89,7 +89,7 @@ class Comparison:
         return (int(runs.all_met.sum()), len(runs)) if runs.requirements else None
 
     def failures(self, arm: int) -> list[tuple[int, str]]:
-        """Seed and reason of each run of an arm that failed while flying.
+        """Seed and reason of each run of an arm that failed while flying, or whose drawn values do not fit one another.
 
         Args:
             arm: its place.
@@ -142,9 +142,12 @@ def compare(
     texts = {key: [as_text(value) for value in values] for key, values in (vary or {}).items()}
     arms = make_arms(several, texts, overrides, tuple(allow_code))
     asked = check_metrics(metrics, arms, METRICS)
+    for arm in arms:  # one that no seed lets fly is an error, told before any flies
+        able_places(arm.mission, chosen, {}, 1, tuple(allow_code))
     found = fly_all(
         [arm.mission for arm in arms],
         chosen,
+        is_lenient=True,
         progress=progress,
         should_stop=should_stop,
         allow_code=tuple(allow_code),
