@@ -24,7 +24,7 @@ def chart(title: str, data: list[Trace], **layout: Any) -> Chart:
         data: traces.
         layout: what differs from the usual.
     """
-    place = {"x": 0, "xref": "paper", "y": 1, "yref": "container", "yanchor": "top", "pad": {"t": 6}}
+    place = {"x": 0, "xref": "container", "y": 1, "yref": "container", "yanchor": "top", "pad": {"t": 6, "l": 4}}
     shared = {
         "title": {"text": f"<b>{plotly_text(title)}</b>", "font": {"size": 13}, **place},
         "margin": {"l": 50, "r": 12, "t": 34, "b": 44},

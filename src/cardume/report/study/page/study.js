@@ -8,8 +8,9 @@
     if (isFinger) layout.dragmode = false; // a finger that moves over a chart scrolls the page
     return Plotly.newPlot(document.getElementById(id), data, layout, options);
   });
-  // On paper a chart has the size that the style gives its column there: two or, of flights, three on a page of A4.
-  const onPaper = (id) => (id.startsWith("worst") ? [215, 300] : [330, id.startsWith("map") ? 270 : 220]);
+  // On paper a chart has the size that the style gives its column there: two, of flights three, of influences one on a page of A4.
+  const sizes = { worst: [215, 300], map: [330, 270], influences: [675, 220] };
+  const onPaper = (id) => sizes[id.split("-")[0]] ?? [330, 220];
   addEventListener("beforeprint", () => {
     for (const id of Object.keys(report.charts)) {
       const [width, height] = onPaper(id);
