@@ -9,7 +9,7 @@ import numpy as np
 from cardume.missions.runs import Run
 from cardume.missions.summary import Verdict
 from cardume.report.page.store import color, packed
-from cardume.report.page.tables import NO_BREAK, badge, meaning_of, words_of
+from cardume.report.page.tables import NO_BREAK, badge, meaning_of, subject_of, words_of
 from cardume.report.table import COLUMNS, NOTHING, cells_of, share_heard
 from cardume.report.words import meaning
 from cardume.simulation.flight import METRICS, Flight
@@ -94,10 +94,9 @@ def required(verdict: Verdict) -> dict[str, Any]:
     Args:
         verdict: of the flight.
     """
-    name = verdict.metric.replace("_", " ")
     return {
         "metric": verdict.metric,
-        "what": f"{verdict.vehicle}: {name}" if verdict.vehicle else name,
+        "what": subject_of(verdict),
         "wanted": f"{verdict.bound} {verdict.wanted:g}{NO_BREAK}{verdict.unit}".strip(),
         "limit": None if verdict.vehicle else _plain(verdict.wanted),  # of the fleet, which a study shows
         "got": f"{verdict.got:.4g}{NO_BREAK}{verdict.unit}".strip() if math.isfinite(verdict.got) else "no value",

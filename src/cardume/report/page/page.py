@@ -23,6 +23,7 @@ from cardume.report.table import number
 from cardume.report.words import meaning
 from cardume.simulation.flight import CERTAINTY, Flight
 
+STILL = 1e-4  # [m/s] of a current that is none
 SPEEDS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 MOVED = (
     *("north", "east", "depth", "heading", "speed", "cross_track"),
@@ -87,7 +88,12 @@ def make_page(run: Run) -> str:
 def _subtitle(run: Run) -> str:
     count = len(run.flight.vehicle_names)
     fleet = f"{count} vehicles" if count != 1 else "1 vehicle"
-    return f"{fleet}, {run.duration:g} s, seed {run.flight.seed}; cardume {run.version}"
+    length = float(np.hypot(*np.diff(run.flight.reference_path, axis=0).T).sum())
+    path = f", {length:.3g} m of path" if length > 0.0 else ""
+    water = np.hypot(run.flight.channels["current_north"], run.flight.channels["current_east"])
+    strongest = float(np.max(water, initial=0.0, where=np.isfinite(water)))
+    sea = f"in a current of up to {number(strongest)} m/s" if strongest > STILL else "in still water"
+    return f"{fleet}{path} {sea}, {run.duration:g} s, seed {run.flight.seed}; cardume {run.version}"
 
 
 def _contents(store: Store, figures: Mapping[str, Any]) -> dict[str, Any]:

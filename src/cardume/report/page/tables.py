@@ -48,15 +48,23 @@ def requirements_table(verdicts: Sequence[Verdict]) -> str:
     return _table("required", head, rows)
 
 
-def _requirement(verdict: Verdict) -> str:
+def subject_of(verdict: Verdict) -> str:
+    """What is required, and of whom, in words.
+
+    Args:
+        verdict: of the flight.
+    """
     name = verdict.metric.replace("cross_track", "cross-track").replace("_", " ")
-    of = f"{verdict.vehicle}: {name}" if verdict.vehicle else name
+    return f"{verdict.vehicle}: {name}" if verdict.vehicle else name
+
+
+def _requirement(verdict: Verdict) -> str:
     got = f"{verdict.got:.4g}{NO_BREAK}{verdict.unit}" if math.isfinite(verdict.got) else "no value"
     if verdict.worst and not verdict.vehicle:
         got += f" ({verdict.worst})"
     word, kind = ("✓ met", "good") if verdict.met else ("✗ missed", "bad")
     meaning = METRICS[verdict.metric].meaning if verdict.metric in METRICS else ""
-    texts = [of, f"{verdict.bound} {verdict.wanted:g}{NO_BREAK}{verdict.unit}", got]
+    texts = [subject_of(verdict), f"{verdict.bound} {verdict.wanted:g}{NO_BREAK}{verdict.unit}", got]
     cells = "".join(f"<td>{html.escape(text)}</td>" for text in texts)
     return f'<tr title="{html.escape(meaning)}">{cells}<td class="text {kind}"><b>{word}</b></td></tr>'
 
