@@ -194,7 +194,12 @@ def test_the_summary_and_the_sentences_tell_it() -> None:
     verdicts = judge(mission.require, flight.metrics)
     summary = summarize(flight, verdicts, duration=60.0, version="1")
     (event,) = [e for e in summary["events"] if "gives up" in e["what"]]
-    assert event == {"time": pytest.approx(16.1, abs=0.21), "vehicle": "alone", "what": "gives up: geofence"}
+    assert event == {
+        "time": pytest.approx(16.1, abs=0.21),
+        "vehicle": "alone",
+        "what": "gives up: geofence",
+        "until": None,
+    }
     assert summary["requirements_met"] is False
     of_fence = next(r for r in summary["requirements"] if r["metric"] == "geofence_margin_min")
     assert of_fence["first_violated"] == pytest.approx(16.1, abs=0.21)
