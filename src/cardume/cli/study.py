@@ -2,6 +2,7 @@
 
 import shlex
 import sys
+import time
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from cardume.studies.forecast import Forecast
 
 DONE, ALL_FAILED = 0, 3
+NO_TIME = 1.0  # [s] that nobody waits for
 
 
 class Request(NamedTuple):
@@ -82,6 +84,24 @@ def study(**given: Any) -> int:
         return _study(request, stopping)
 
 
+class Clock:
+    """How long the missions took, beside what was expected."""
+
+    def __init__(self) -> None:
+        self._began, self._expected, self._missions = 0.0, 0.0, 0
+
+    def begin(self, forecast: "Forecast") -> None:
+        self._began, self._expected, self._missions = time.monotonic(), forecast.seconds, forecast.missions
+
+    def words(self) -> str:
+        """Nothing where all was over in no time."""
+        took = time.monotonic() - self._began
+        if not self._missions or took < NO_TIME:
+            return ""
+        flown = f"{self._missions:,} missions flown in {time_words(took)}, {self._missions / took:,.3g} a second"
+        return f"{flown}; {time_words(self._expected)} expected" if self._expected >= NO_TIME else flown
+
+
 def _study(request: Request, stopping: Stopping) -> int:
     with _place(request) as directory:
         runs = _fly(request, directory, stopping)
@@ -91,7 +111,7 @@ def _study(request: Request, stopping: Stopping) -> int:
 def _fly(request: Request, directory: Path, stopping: Stopping) -> "xarray.Dataset":
     from cardume.studies.studying import study as fly_study
 
-    asked = request.asked
+    asked, clock = request.asked, Clock()
     with Progress(asked.is_talkative) as progress:
 
         def announce(forecast: "Forecast") -> None:
@@ -99,8 +119,9 @@ def _fly(request: Request, directory: Path, stopping: Stopping) -> "xarray.Datas
             progress.pause()
             if asked.is_talkative:
                 _say_forecast(forecast)
+            clock.begin(forecast)
 
-        return fly_study(
+        runs = fly_study(
             request.mission,
             request.runs,
             directory=directory,
@@ -116,6 +137,9 @@ def _fly(request: Request, directory: Path, stopping: Stopping) -> "xarray.Datas
             progress=progress,
             should_stop=stopping.is_asked,
         )
+    if asked.is_talkative and not stopping.is_asked() and (took := clock.words()):
+        click.echo(took, err=True)
+    return runs
 
 
 def _place(request: Request) -> AbstractContextManager[Path]:

@@ -35,7 +35,7 @@ from cardume.studies.required import Wanted, wanted_of
 from cardume.studies.run_table import Refused, Run, RunTable, stack, tabulate
 from cardume.studies.work import wants_lanes
 
-__all__ = ["Progress", "RunTable", "able_places", "fly_all", "fly_seeds", "num_processors"]
+__all__ = ["PORTION", "Progress", "RunTable", "able_places", "fly_all", "fly_seeds", "num_processors"]
 
 Progress = Callable[[str, int, int], None]
 Stop = Callable[[], bool]

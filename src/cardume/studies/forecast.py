@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from cardume.compiler import WIDTH
 from cardume.errors import InputError
 from cardume.missions.mission import Mission
 from cardume.studies.cases import Cases
-from cardume.studies.flying import Progress, able_places, fly_seeds
+from cardume.studies.flying import PORTION, Progress, able_places, fly_seeds, num_processors
 from cardume.studies.run_table import RunTable
 from cardume.studies.work import expected_steps, expected_ticks, wants_lanes
 
@@ -19,8 +20,9 @@ GLIMPSE = 2.0  # [s] of a mission, in which every metric that it will have appea
 MOST_PROBED = 200  # options that are looked at
 MOST_COMPARED = 20  # options of which one must give other numbers with another seed
 MOST_TRIED = 100  # runs of which one must be such that its values fit one another
-SAMPLE = 32  # missions flown for their rate, where that takes less than
-SAMPLE_TIME = 1.0  # [s]
+SAMPLE_TIME = 1.0  # [s] that missions flown for their rate may take, beyond the first few
+SAMPLE_SHARE = 0.05  # of the time of the study, by which that may be longer
+LONGEST_SAMPLE = 5.0  # [s]
 
 
 @dataclass(frozen=True)
@@ -91,36 +93,48 @@ class Trial:
         return self._fly(mission, 2).is_varied
 
     def seconds(self) -> float:
-        """How long [s] one processor takes for one mission of the study, in the mean of its cases."""
-        self._fly(_shortened(self._first), SAMPLE if self._lanes else 1, self._lanes)  # compiles
-        count = SAMPLE if self._lanes else 1
+        """How long [s] one processor takes for one mission of the study, in the mean of its cases.
+
+        It is measured as the study flies: on all processors at once, which share a memory and slow one another down,
+        and in portions of which the next is planned while one flies.
+        """
+        threads = num_processors()
+        few, many = (WIDTH * threads, 2 * PORTION) if self._lanes else (threads, 16 * threads)
+        self._fly(_shortened(self._first), few, self._lanes)  # compiles
+        each = self._timed(few, threads)
+        if many * each < min(LONGEST_SAMPLE, SAMPLE_TIME + SAMPLE_SHARE * each * self._cases.size * len(self._seeds)):
+            each = self._timed(many, threads)
+        share = expected_steps(self._cases.mission) / max(expected_steps(self._first), 1.0)
+        return each * threads * share
+
+    def _timed(self, count: int, threads: int) -> float:
+        """How long [s] each of several missions takes, all of them flown on so many threads."""
+        seeds, chances = self._able(self._first, count)
         begin = time.perf_counter()
-        self._fly(self._first, count, self._lanes)
-        taken = (time.perf_counter() - begin) / count
-        if not self._lanes and taken * SAMPLE < SAMPLE_TIME:
-            begin = time.perf_counter()
-            self._fly(self._first, SAMPLE)
-            taken = (time.perf_counter() - begin) / SAMPLE
-        return taken * expected_steps(self._cases.mission) / max(expected_steps(self._first), 1.0)
+        fly_seeds(self._first, seeds, chances=chances, threads=threads, lanes=self._lanes, allow_code=self._allow_code)
+        return (time.perf_counter() - begin) / count
 
     @property
     def _first(self) -> Mission:
         return self._cases.at(self._cases.each_option_once()[0])
 
     def _fly(self, mission: Mission, count: int, lanes: bool = False) -> RunTable:
-        """Runs of a mission whose drawn values fit one another: the first of the study that do, then others."""
-
         def note(stage: str, done: int, total: int) -> None:
             if stage == "compile":
                 self._progress(stage, done, total)
 
+        seeds, chances = self._able(mission, count)
+        how: dict[str, Any] = {"allow_code": self._allow_code, "threads": 1, "lanes": lanes or None, "progress": note}
+        return fly_seeds(mission, seeds, chances=chances, **how)
+
+    def _able(self, mission: Mission, count: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """Runs of a mission whose drawn values fit one another: the first of the study that do, then others."""
         # of the study, and beyond its last run with seeds that go on
         tried = np.arange(max(count, MOST_TRIED))
         seeds = int(self._seeds[0]) + tried
         chances = {key: values[tried % len(values)] for key, values in self._chances.items()}
         able = np.resize(able_places(mission, seeds, chances, count, self._allow_code), count)
-        how: dict[str, Any] = {"allow_code": self._allow_code, "threads": 1, "lanes": lanes or None, "progress": note}
-        return fly_seeds(mission, seeds[able], chances={key: v[able] for key, v in chances.items()}, **how)
+        return seeds[able], {key: values[able] for key, values in chances.items()}
 
     def _glimpse(self, mission: Mission) -> RunTable:
         """All of a mission that cannot be so short."""
