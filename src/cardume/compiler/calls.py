@@ -110,7 +110,8 @@ def _call_lanes(
     c: Any, b: Any, wide: Any, strided: Any, handle: Any, parts: Any, gains: Any, memory: Any, dt: Any
 ) -> Any:
     """Call a law for eight missions at once, or one after the other where it does not compile for lanes."""
-    answer = cgutils.alloca_once(b, c.get_value_type(wide.return_type))
+    with b.goto_entry_block():  # not by Numba's own, which sets it to zero each time: both ways write all of it
+        answer = b.alloca(c.get_value_type(wide.return_type))
     with b.if_else(b.icmp_signed(">", handle, ir.Constant(INT64, 0))) as (whole, each):
         with whole:
             b.store(_call(c, b, wide, handle, [*parts, gains, memory, dt]), answer)

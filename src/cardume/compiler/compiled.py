@@ -18,6 +18,8 @@ from typing import Any, TypeVar
 from numba import config, njit
 from numba.extending import overload
 
+from cardume.compiler.fusing import fused
+
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy"}
 INLINED = {"forceinline": True}
 # Numbers that a call passes by value, above which it is inlined: in lanes each takes two registers or 64 bytes of
@@ -73,6 +75,8 @@ def inlined(function: F) -> F:
 
 
 def _specialized(function: F, options: dict[str, Any]) -> F:
+    fused(function.__code__)
+
     # Numba compiles `function` itself, once for each number type that it meets.
     @overload(function, strict=False, jit_options=options)
     def specialized(*arguments: Any) -> Callable[..., Any]:
@@ -97,6 +101,7 @@ def entry(function: F) -> F:
         The compiled function; plain Python when NUMBA_DISABLE_JIT is set.
     """
     function.__qualname__ += f"_{source_stamp()}"
+    fused(function.__code__)
     return cached(function)
 
 

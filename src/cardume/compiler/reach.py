@@ -11,6 +11,7 @@ import numpy as np
 from numba import config, njit
 
 from cardume.compiler.compiled import INLINED, OPTIONS, is_compiled
+from cardume.compiler.fusing import fused
 
 
 def _helpers(function: FunctionType) -> dict[str, FunctionType]:
@@ -49,6 +50,7 @@ def with_compiled_helpers(function: Any, done: dict[Any, Any] | None = None) -> 
             function.__closure__,
         )
         twin.__module__, twin.__qualname__ = function.__module__, function.__qualname__
+        fused(twin.__code__)
         done[function] = njit(**OPTIONS, **INLINED)(twin)
         twin.__globals__.update({n: with_compiled_helpers(h, done) for n, h in _helpers(function).items()})
     return done[function]
