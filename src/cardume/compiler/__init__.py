@@ -10,6 +10,7 @@ from cardume.compiler.lanes import (
     sqrt,
     where,
 )
+from cardume.compiler.polynomial import polynomial, turned
 from cardume.compiler.records import Layout
 from cardume.compiler.reference import passing, value_of
 from cardume.compiler.rows import (
@@ -45,6 +46,7 @@ __all__ = [
     "negate",
     "optional",
     "passing",
+    "polynomial",
     "ramp",
     "rows_of",
     "scale2",
@@ -57,6 +59,7 @@ __all__ = [
     "store",
     "to_bits",
     "to_float",
+    "turned",
     "value_of",
     "where",
 ]

@@ -16,7 +16,7 @@ from numba.core import ir, types
 from numba.core.cgutils import get_or_insert_function
 from numba.core.rewrites import Rewrite, register_rewrite
 
-from cardume.compiler.lanes import DOUBLE, DOUBLES, LANES, WIDTH, is_number, widened
+from cardume.compiler.lanes import DOUBLES, LANES, WIDTH, is_number, widened
 from cardume.compiler.primitive import primitive
 
 _codes: set[CodeType] = set()  # of the functions to which this applies: other people's compiled code stays as it is
@@ -53,16 +53,19 @@ def less_product(a: float, b: float, c: float) -> float:
     return c - a * b
 
 
+def multiply_add(b: Any, x: Any, y: Any, z: Any) -> Any:
+    """LLVM code for x y + z, rounded once, of numbers or of lanes."""
+    name = f"llvm.fma.v{WIDTH}f64" if x.type == DOUBLES else "llvm.fma.f64"
+    return b.call(get_or_insert_function(b.module, llvm.FunctionType(x.type, [x.type] * 3), name), [x, y, z])
+
+
 def _fma(function: Any, negated: int | None) -> None:
     @primitive(function, _type)
     def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-        wanted = signature.return_type
-        number, name = (DOUBLES, f"v{WIDTH}f64") if wanted is LANES else (DOUBLE, "f64")
-        parts = [widened(c, b, *part, wanted) for part in zip(arguments, signature.args, strict=True)]
+        parts = [widened(c, b, *part, signature.return_type) for part in zip(arguments, signature.args, strict=True)]
         if negated is not None:
             parts[negated] = b.fneg(parts[negated])
-        kind = llvm.FunctionType(number, [number] * 3)
-        return b.call(get_or_insert_function(b.module, kind, f"llvm.fma.{name}"), parts)
+        return multiply_add(b, *parts)
 
 
 _fma(product_plus, None)

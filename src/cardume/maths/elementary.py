@@ -24,7 +24,7 @@ The polynomials are minimax approximations computed for this library: `tests/mat
 pairs (Estrin), which waits less than Horner's rule.
 """
 
-from cardume.compiler import compiled, floor, scale2, split2, sqrt, where
+from cardume.compiler import compiled, floor, polynomial, scale2, split2, sqrt, where
 
 __all__ = [
     "clip",
@@ -51,8 +51,9 @@ TWO_TO_54 = 18014398509481984.0
 LN2_HIGH, LN2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # HIGH has 32 bits: a whole number times it is exact
 LOG2_E = 1.4426950408889634
 EXP_MAX, EXP_MIN = 709.782712893384, -708.3964185322641  # log of the largest and of the smallest normal number
-# r coth(r / 2) = 2 + z p(z), z = r^2, |r| <= 0.51 log 2
-COTH = (
+# r coth(r / 2) = p(z), z = r^2, |r| <= 0.51 log 2
+COTH = polynomial(
+    2.0,
     0.16666666666666588,
     -0.002777777777688546,
     6.613756284841763e-05,
@@ -60,7 +61,7 @@ COTH = (
     4.136650099095235e-08,
 )
 # 2 artanh(s) = 2 s + s z p(z), z = s^2, |s| <= 3 - 2 sqrt(2)
-ARTANH = (
+ARTANH = polynomial(
     0.6666666666666734, 0.3999999999941465, 0.2857142874239978, 0.22222198571523796,
     0.1818356442935653, 0.15314047566953803, 0.14795982288958837,
 )  # fmt: skip
@@ -118,10 +119,7 @@ def hypot(x: float, y: float) -> float:
 @compiled
 def _r_coth_half(r: float) -> float:
     """r coth(r / 2), which is even; exp(r) = 1 + 2 r / (this - r)."""
-    p0, p1, p2, p3, p4 = COTH
-    z = r * r
-    z2 = z * z
-    return 2.0 + z * ((p0 + z * p1) + z2 * ((p2 + z * p3) + z2 * p4))
+    return COTH(r * r)
 
 
 @compiled
@@ -167,12 +165,10 @@ def log(x: float) -> float:
     is_regular = (scaled > 0.0) & (scaled < INF)
     k, m = split2(where(is_regular, scaled, 1.0))
     k = where(is_tiny, k - 54.0, k)
-    p0, p1, p2, p3, p4, p5, p6 = ARTANH
     f = m - 1.0
     s = f / (2.0 + f)
     z = s * s
-    z2 = z * z
-    p = z * ((p0 + z * p1) + z2 * ((p2 + z * p3) + z2 * ((p4 + z * p5) + z2 * p6)))
+    p = z * ARTANH(z)
     h = 0.5 * f * f
     # log m = 2 s + s p = f - (h - s (h + p)): the part that rounds is small beside f
     r = k * LN2_HIGH - ((h - (s * (h + p) + k * LN2_LOW)) - f)

@@ -1,7 +1,7 @@
 """Circular functions and their inverses; errors, edges and how they are written: `elementary.py`."""
 
-from cardume.compiler import compiled, sqrt, where
-from cardume.maths.elementary import INF, NAN, round_even
+from cardume.compiler import compiled, polynomial, sqrt, turned, where
+from cardume.maths.elementary import INF, NAN, ROUNDER
 
 __all__ = [
     "ANGLE_LIMIT",
@@ -29,13 +29,13 @@ TWO_OVER_PI = 0.6366197723675814
 PIO2_HIGH, PIO2_MIDDLE, PIO2_LOW = 1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21
 TAN_PI_8 = 0.41421356237309503
 
-# sin y = y + y z p(z) and cos y = 1 - z / 2 + z^2 p(z), z = y^2, |y| <= pi / 4
-SIN = (
+# sin y = y + y z p(z) and cos y = 1 + z p(z), z = y^2, |y| <= pi / 4
+SIN = polynomial(
     -0.16666666666666632, 0.008333333333322425, -0.00019841269829817576,
     2.755731369536661e-06, -2.505075866653152e-08, 1.589682830418914e-10,
 )  # fmt: skip
-COS = (
-    0.0416666666666666, -0.001388888888887414, 2.4801587289492427e-05,
+COS = polynomial(
+    -0.5, 0.0416666666666666, -0.001388888888887414, 2.4801587289492427e-05,
     -2.755731435538615e-07, 2.08757237003518e-09, -1.1359670513630591e-11,
 )  # fmt: skip
 # atan t = t - t z p(z), z = t^2, |t| <= tan(pi / 8)
@@ -50,28 +50,16 @@ ASIN = (
     0.02237175353616429, 0.017359770790875525, 0.013884602296490692, 0.012173251605584313,
     0.006510978871700707, 0.019573556259544187, -0.016293523780122582, 0.03195859236014525,
 )  # fmt: skip
+# long ones in two halves, which wait for each other only at the end
+ATAN_EVEN, ATAN_ODD = polynomial(*ATAN[::2]), polynomial(*ATAN[1::2])
+ASIN_EVEN, ASIN_ODD = polynomial(*ASIN[::2]), polynomial(*ASIN[1::2])
 
 
 @compiled
 def _sincos_octant(y: float) -> tuple[float, float]:
     """sin and cos for abs(y) <= pi / 4."""
-    s0, s1, s2, s3, s4, s5 = SIN
-    c0, c1, c2, c3, c4, c5 = COS
     z = y * y
-    z2 = z * z
-    s = (s0 + z * s1) + z2 * ((s2 + z * s3) + z2 * (s4 + z * s5))
-    c = (c0 + z * c1) + z2 * ((c2 + z * c3) + z2 * (c4 + z * c5))
-    return y + y * (z * s), (1.0 - 0.5 * z) + z2 * c
-
-
-@compiled
-def _turn(q: float, s: float, c: float) -> tuple[float, float]:
-    """(sin, cos) of an angle plus q quarter turns."""
-    m = q - 4.0 * round_even(0.25 * q)  # -2, -1, 0, 1 or 2
-    is_odd = abs(m) == 1.0
-    a = where(is_odd, c, s)
-    b = where(is_odd, s, c)
-    return where((m < 0.0) | (m > 1.5), -a, a), where((m > 0.5) | (m < -1.5), -b, b)
+    return y + y * z * SIN(z), 1.0 + z * COS(z)
 
 
 @compiled
@@ -86,18 +74,19 @@ def sincos(x: float) -> tuple[float, float]:
     Returns:
         (sin x, cos x).
     """
-    q = round_even(x * TWO_OVER_PI)
+    raised = x * TWO_OVER_PI + ROUNDER
+    q = raised - ROUNDER
     y = ((x - q * PIO2_HIGH) - q * PIO2_MIDDLE) - q * PIO2_LOW
     s, c = _sincos_octant(where(abs(x) <= ANGLE_LIMIT, y, NAN))
-    return _turn(q, s, c)
+    return turned(raised, s, c)
 
 
 @compiled
 def sincos_turns(turns: float) -> tuple[float, float]:
     """(sin, cos) of 2 pi turns, turns [-] below 2^49 in size; whole turns are taken off exactly."""
-    q = round_even(4.0 * turns)
-    s, c = _sincos_octant((turns - 0.25 * q) * TWO_PI)
-    return _turn(q, s, c)
+    raised = 4.0 * turns + ROUNDER
+    s, c = _sincos_octant((turns - 0.25 * (raised - ROUNDER)) * TWO_PI)
+    return turned(raised, s, c)
 
 
 @compiled
@@ -122,16 +111,10 @@ def tan(x: float) -> float:
 @compiled
 def _atan_ratio(low: float, high: float) -> float:
     """atan(low / high) in [0, pi / 4], for 0 <= low <= high, high > 0."""
-    p0, p1, p2, p3, p4, p5, p6, p7, p8, p9, p10 = ATAN
     is_steep = low > TAN_PI_8 * high
     t = where(is_steep, low - high, low) / where(is_steep, low + high, high)  # |t| <= tan(pi / 8)
     z = t * t
-    z2 = z * z
-    z4 = z2 * z2
-    begin = (p0 + z * p1) + z2 * (p2 + z * p3)
-    middle = (p4 + z * p5) + z2 * (p6 + z * p7)
-    end = (p8 + z * p9) + z2 * p10
-    p = begin + z4 * (middle + z4 * end)
+    p = ATAN_EVEN(z * z) + z * ATAN_ODD(z * z)
     return where(is_steep, QUARTER_PI, 0.0) + (t - t * (z * p))
 
 
@@ -174,17 +157,11 @@ def atan2(y: float, x: float) -> float:
 @compiled
 def _arc_sine_core(x: float) -> tuple[float, float]:
     """(s, p): s + p = asin(abs(x)) up to 1/2, and asin(sqrt((1 - abs(x)) / 2)) above; NaN beyond 1."""
-    p0, p1, p2, p3, p4, p5, p6, p7, p8, p9, p10, p11 = ASIN
     a = abs(x)
     is_large = a > 0.5
     z = where(is_large, 0.5 * (1.0 - a), a * a)
     s = where(is_large, sqrt(z), a)
-    z2 = z * z
-    z4 = z2 * z2
-    begin = (p0 + z * p1) + z2 * (p2 + z * p3)
-    middle = (p4 + z * p5) + z2 * (p6 + z * p7)
-    end = (p8 + z * p9) + z2 * (p10 + z * p11)
-    return s, s * (z * (begin + z4 * (middle + z4 * end)))
+    return s, s * (z * (ASIN_EVEN(z * z) + z * ASIN_ODD(z * z)))
 
 
 @compiled
