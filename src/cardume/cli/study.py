@@ -91,6 +91,11 @@ class Clock:
         self._began, self._expected, self._missions = 0.0, 0.0, 0
 
     def begin(self, forecast: "Forecast") -> None:
+        """Now they fly.
+
+        Args:
+            forecast: what was announced.
+        """
         self._began, self._expected, self._missions = time.monotonic(), forecast.seconds, forecast.missions
 
     def words(self) -> str:

@@ -1,10 +1,10 @@
 """Products that feed a sum are rounded once, together with it: the fused multiply-add of every processor since 2013.
 
-C compilers do this where they like (`-ffp-contract`), and the bits then depend on the processor and on the options. Here
-it is done before a type is chosen and by a rule that can be read off the source, so one mission and eight lanes, with and
-without AVX, give the same bits: in `a * b + c`, `c + a * b`, `a * b - c` and `c - a * b`, written as one expression.
-Where both sides are products neither is fused: x y' - x' y stays 0 for parallel vectors, and x^2 + y^2 the same with x and y
-exchanged.  Plain Python rounds twice.
+C compilers do this where they like (`-ffp-contract`), and the bits then depend on the processor and on the options.
+Here a rule that can be read off the source decides, so one mission and eight lanes, with and without AVX, give the same
+bits: `a * b + c`, `c + a * b`, `a * b - c` and `c - a * b` are fused where they stand in one expression.  Where both
+sides are products neither is: x y' - x' y stays 0 for parallel vectors, and x^2 + y^2 the same with x and y exchanged.
+Plain Python rounds twice.
 """
 
 import operator
@@ -80,7 +80,7 @@ _SUMS, _DIFFERENCES, _PRODUCTS = (
 
 
 @register_rewrite("after-inference")
-class _Fuse(Rewrite):  # type: ignore[misc]
+class _Fuse(Rewrite):
     """Find the products that nothing but one sum of the same expression reads."""
 
     def __init__(self, state: Any = None) -> None:

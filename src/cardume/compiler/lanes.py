@@ -113,6 +113,10 @@ for _python, _llvm in (
     (operator.sub, "fsub"),
     (operator.mul, "fmul"),
     (operator.truediv, "fdiv"),
+    (operator.iadd, "fadd"),  # x += y, which a user may write
+    (operator.isub, "fsub"),
+    (operator.imul, "fmul"),
+    (operator.itruediv, "fdiv"),
 ):
     _overload_lanes(_python, _binary_intrinsic(lambda b, x, y, m=_llvm: getattr(b, m)(x, y), LANES, LANES, LANES))
 for _python, _llvm in (

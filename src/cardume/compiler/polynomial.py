@@ -1,6 +1,7 @@
 """Polynomials whose coefficients stand in one table of the program, and angles turned by quarters."""
 
 import hashlib
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -32,8 +33,8 @@ def polynomial(*coefficients: float) -> Callable[[float], float]:
 
     @primitive(value, lambda x: (LANES if x is LANES else types.float64)(x))
     def generate(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-        # As constants each would be a line of its own in the pool of the just-in-time compiler, whose address is loaded
-        # anew each time, 10 bytes of code; the table is addressed once. A weak one: else its numbers would be folded in.
+        # As constants each would stand alone in the pool of the just-in-time compiler, and its address be loaded anew
+        # each time, 10 bytes of code; a table is addressed once. A weak one, or its numbers would be folded in.
         table = b.module.globals.get(name)
         if table is None:
             table = ir.GlobalVariable(b.module, kind, name)
@@ -63,7 +64,7 @@ def turned(quarters: float, sine: float, cosine: float) -> tuple[float, float]:
         sine: [-] of the angle.
         cosine: [-] of it.
     """
-    if quarters != quarters:
+    if not math.isfinite(quarters):
         return sine, cosine
     quarter = int(quarters - _ROUNDER) % 4
     return ((sine, cosine), (cosine, -sine), (-sine, -cosine), (-cosine, sine))[quarter]

@@ -24,18 +24,18 @@ TWO_PI = 6.283185307179586
 HALF_PI = 1.5707963267948966
 QUARTER_PI = 0.7853981633974483
 
-ANGLE_LIMIT = 1048576.0  # [rad] 2^20: so far q PIO2_HIGH and q PIO2_MIDDLE are exact, 20 + 33 bits
+ANGLE_LIMIT = 1048576.0  # [rad] 2^20: so far q PIO2_HIGH is exact, 20 + 33 bits, and x - q PIO2_HIGH too
 TWO_OVER_PI = 0.6366197723675814
-PIO2_HIGH, PIO2_MIDDLE, PIO2_LOW = 1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21
+PIO2_HIGH, PIO2_MIDDLE, PIO2_LOW = 1.5707963267341256, 6.077100506506192e-11, 3.5215598651832e-27
 TAN_PI_8 = 0.41421356237309503
 
-# sin y = y + y z p(z) and cos y = 1 + z p(z), z = y^2, |y| <= pi / 4
-SIN = polynomial(
+# sin y = y + y z p(z) and cos y = 1 - z / 2 + z^2 p(z), z = y^2, |y| <= pi / 4
+SIN = (
     -0.16666666666666632, 0.008333333333322425, -0.00019841269829817576,
     2.755731369536661e-06, -2.505075866653152e-08, 1.589682830418914e-10,
 )  # fmt: skip
-COS = polynomial(
-    -0.5, 0.0416666666666666, -0.001388888888887414, 2.4801587289492427e-05,
+COS = (
+    0.0416666666666666, -0.001388888888887414, 2.4801587289492427e-05,
     -2.755731435538615e-07, 2.08757237003518e-09, -1.1359670513630591e-11,
 )  # fmt: skip
 # atan t = t - t z p(z), z = t^2, |t| <= tan(pi / 8)
@@ -50,16 +50,18 @@ ASIN = (
     0.02237175353616429, 0.017359770790875525, 0.013884602296490692, 0.012173251605584313,
     0.006510978871700707, 0.019573556259544187, -0.016293523780122582, 0.03195859236014525,
 )  # fmt: skip
+
+_sine, _cosine = polynomial(*SIN), polynomial(-0.5, *COS)
 # long ones in two halves, which wait for each other only at the end
-ATAN_EVEN, ATAN_ODD = polynomial(*ATAN[::2]), polynomial(*ATAN[1::2])
-ASIN_EVEN, ASIN_ODD = polynomial(*ASIN[::2]), polynomial(*ASIN[1::2])
+_atan_even, _atan_odd = polynomial(*ATAN[::2]), polynomial(*ATAN[1::2])
+_asin_even, _asin_odd = polynomial(*ASIN[::2]), polynomial(*ASIN[1::2])
 
 
 @compiled
 def _sincos_octant(y: float) -> tuple[float, float]:
     """sin and cos for abs(y) <= pi / 4."""
     z = y * y
-    return y + y * z * SIN(z), 1.0 + z * COS(z)
+    return y + y * z * _sine(z), 1.0 + z * _cosine(z)
 
 
 @compiled
@@ -114,7 +116,7 @@ def _atan_ratio(low: float, high: float) -> float:
     is_steep = low > TAN_PI_8 * high
     t = where(is_steep, low - high, low) / where(is_steep, low + high, high)  # |t| <= tan(pi / 8)
     z = t * t
-    p = ATAN_EVEN(z * z) + z * ATAN_ODD(z * z)
+    p = _atan_even(z * z) + z * _atan_odd(z * z)
     return where(is_steep, QUARTER_PI, 0.0) + (t - t * (z * p))
 
 
@@ -161,7 +163,7 @@ def _arc_sine_core(x: float) -> tuple[float, float]:
     is_large = a > 0.5
     z = where(is_large, 0.5 * (1.0 - a), a * a)
     s = where(is_large, sqrt(z), a)
-    return s, s * (z * (ASIN_EVEN(z * z) + z * ASIN_ODD(z * z)))
+    return s, s * (z * (_asin_even(z * z) + z * _asin_odd(z * z)))
 
 
 @compiled
