@@ -132,6 +132,21 @@ def is_kept(compiled_function: Any) -> bool:
     return files is None or Path(files._index_path).exists()
 
 
+def is_kept_for_lanes(compiled_function: Any) -> bool:
+    """Whether the cache on disk, or this process, has the code of an `entry` for tables of eight missions.
+
+    Args:
+        compiled_function: its first argument is a record of tables.
+    """
+    files = getattr(getattr(compiled_function, "_cache", None), "_cache_file", None)
+    if files is None:
+        return False
+    processor = compiled_function.targetctx.codegen().magic_tuple()
+    on_disk = [arguments for arguments, made_for, _ in files._load_index() if made_for == processor]
+    known = [arguments[0] for arguments in (*on_disk, *compiled_function.overloads)]
+    return any(getattr(table, "ndim", 0) == 2 for tables in known for table in getattr(tables, "types", ()))
+
+
 @cache
 def source_stamp() -> str:
     """Hash of every source file of the compute layers (the command line is not among them)."""

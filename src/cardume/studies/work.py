@@ -2,20 +2,24 @@
 
 from typing import Any
 
+from cardume.compiler.compiled import is_kept_for_lanes
 from cardume.missions.mission import Mission
+from cardume.simulation.engine import advance
 
-# Vehicle-ticks from which flying eight missions in one register saves more than compiling the engine for it
-# takes, where that was never done: about a minute on two processors.
-LANES_FROM = 100_000_000
+# Vehicle-ticks from which eight missions in one register save more time than bringing the engine for them to machine code
+# takes: about a minute on two processors where that was never done, a second or a few where it was.
+LANES_FROM, KEPT_LANES_FROM = 100_000_000, 10_000_000
 
 
 def wants_lanes(ticks: float) -> bool:
-    """Whether so much is flown that the engine's second form, eight missions in a register, is worth compiling.
+    """Whether so much is flown that the engine's second form, eight missions in a register, is worth its preparation.
 
     Args:
         ticks: [-] of all vehicles of all missions.
     """
-    return ticks >= LANES_FROM
+    if ticks < min(LANES_FROM, KEPT_LANES_FROM):
+        return False
+    return ticks >= LANES_FROM or is_kept_for_lanes(advance)
 
 
 def expected_ticks(mission: Mission) -> float:
