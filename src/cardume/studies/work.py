@@ -6,8 +6,8 @@ from cardume.compiler.compiled import is_kept_for_lanes
 from cardume.missions.mission import Mission
 from cardume.simulation.engine import advance
 
-# Vehicle-ticks from which eight missions in one register save more time than bringing the engine for them to machine code
-# takes: about a minute on two processors where that was never done, a second or a few where it was.
+# Vehicle-ticks from which eight missions in one register save more time than bringing the engine for them to machine
+# code takes: about a minute on two processors where that was never done, a second or a few where it was.
 LANES_FROM, KEPT_LANES_FROM = 100_000_000, 10_000_000
 
 
