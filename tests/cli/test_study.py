@@ -122,6 +122,16 @@ def test_a_study_that_lacks_what_it_says_of_itself_is_told(here: Path, cardume: 
     assert "is damaged (its mission is not the one of its mission_hash)" in cardume("report", "it").err
 
 
+@pytest.mark.parametrize("address", ["nonsense", "http://127.0.0.1:9", "tls://127.0.0.1:9", "inproc://x", "tcp://a:b"])
+def test_no_address_leaves_a_client_behind(here: Path, address: str) -> None:
+    """One that could not read its address is heard of again when the program ends, with a traceback."""
+    command = [*PROGRAM, "study", "line.yaml", "--runs", "4", "--scheduler", address]
+    done = subprocess.run(command, cwd=here, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "no Dask scheduler answers there" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
 def test_a_wrong_scheduler_is_told_before_anything_flies(
     here: Path, cardume: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:

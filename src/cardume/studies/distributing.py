@@ -33,6 +33,7 @@ from cardume.studies.run_table import Refused, RunTable, tabulate
 from cardume.studies.sampling import needed
 from cardume.units import printable
 
+NETWORKED = ("tcp", "tls", "ws", "wss")  # ways to a scheduler at a host and a port
 PATIENCE = 5.0  # [s] for a scheduler to answer
 GLANCE = 0.2  # [s] between two looks at whether to stop
 AHEAD = 2000  # tasks that a scheduler knows of at a time
@@ -308,6 +309,7 @@ def _read(text: str, allow_code: tuple[str, ...]) -> tuple[Cases, tuple[Wanted, 
 
 def _connected(distributed: Any, address: str) -> Any:
     try:
+        _check_address(distributed, address)  # a client that cannot read its address never ends well
         return distributed.Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError) as problem:
         what = printable(str(problem).splitlines()[0] if str(problem) else type(problem).__name__)[:200]
@@ -315,6 +317,18 @@ def _connected(distributed: Any, address: str) -> Any:
             f"--scheduler {printable(address)}: no Dask scheduler answers there ({what}); start one with"
             " 'dask scheduler', and give the address that it prints, as tcp://192.168.1.7:8786"
         ) from None
+
+
+def _check_address(distributed: Any, address: str) -> None:
+    from distributed.comm.addressing import parse_address, parse_host_port
+
+    scheme, place = parse_address(address)
+    if scheme not in NETWORKED:
+        raise ValueError(f"{scheme}:// is none of {', '.join(f'{known}://' for known in NETWORKED)}")
+    parse_host_port(place)
+    is_secret = scheme in ("tls", "wss")
+    if is_secret and distributed.Security().get_connection_args("client").get("ssl_context") is None:
+        raise ValueError("the configuration of Dask names no certificates, distributed.comm.tls")
 
 
 def _result(future: Any) -> list[RunTable]:
