@@ -49,6 +49,23 @@ def test_one_expression_is_rounded_once() -> None:
     assert list(scalar_sums(A, B, C, D)) == WANTED
 
 
+def test_branches_and_loops_and_what_is_read_twice() -> None:
+    @compiled
+    def mixed(a: float, b: float, c: float, x: float) -> float:
+        total = 0.0
+        for _ in range(3):
+            total = total * b + a if x > 0.0 else a * b - total
+        return total if a * b < c * c < a * b + c else -total
+
+    @njit
+    def call(a: float, b: float, c: float, x: float) -> float:
+        return mixed(a, b, c, x)
+
+    for x in (1.0, -1.0):
+        assert call(1.5, 2.0, 3.0, x) == mixed(1.5, 2.0, 3.0, x)  # exact numbers
+        assert call(1.5, 2.0, -1.0, x) == mixed(1.5, 2.0, -1.0, x)
+
+
 def test_whole_numbers_stay_whole() -> None:
     @compiled
     def place(row: int, width: int, column: int) -> int:

@@ -8,6 +8,7 @@ Plain Python rounds twice.
 """
 
 import operator
+from collections import Counter
 from types import CodeType
 from typing import Any
 
@@ -92,11 +93,14 @@ class _Fuse(Rewrite):
         if not self._applies:
             return False
         self._block, self._types, self._calls = block, typemap, calltypes
+        steps = (step for one in func_ir.blocks.values() for step in one.body)
+        mentioned = Counter(name.name for step in steps for name in step.list_vars())
         products: dict[str, Any] = {}
         self._found: dict[Any, tuple[Any, Any]] = {}  # sum: product, function
         for step in block.find_insts(ir.Assign):
-            if self._is(step.value, _PRODUCTS) and step.target.name.startswith("$"):
-                products[step.target.name] = step
+            name = step.target.name
+            if self._is(step.value, _PRODUCTS) and name.startswith("$") and mentioned[name] == 2:  # made, and read once
+                products[name] = step
             elif self._is(step.value, _SUMS + _DIFFERENCES):
                 left, right = (products.get(side.name) for side in (step.value.lhs, step.value.rhs))
                 if (left is None) == (right is None):
