@@ -1,6 +1,6 @@
 """The only place that knows Numba: what the rest of the package needs to write compiled code."""
 
-from cardume.compiler.bits import scale2, split2, to_bits, to_float
+from cardume.compiler.bits import scale2, split2, to_bits, to_float, turned
 from cardume.compiler.compiled import compiled, entry, inlined, source_stamp
 from cardume.compiler.lanes import (
     WIDTH,
@@ -10,7 +10,7 @@ from cardume.compiler.lanes import (
     sqrt,
     where,
 )
-from cardume.compiler.polynomial import polynomial, turned
+from cardume.compiler.polynomial import polynomial
 from cardume.compiler.records import Layout
 from cardume.compiler.reference import passing, value_of
 from cardume.compiler.rows import (

@@ -1,4 +1,4 @@
-"""Numbers and their bits, for one float64 or eight lanes: whole numbers, exponents, and the words of random numbers."""
+"""Numbers and their bits, for one float64 or eight lanes: whole numbers, exponents, quarter turns, and random words."""
 
 import math
 from typing import Any
@@ -8,7 +8,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic, overload
 
-from cardume.compiler.lanes import DOUBLE, DOUBLES, INT64, LANE_BITS, LANES, WIDTH, WORDS, unary_intrinsic
+from cardume.compiler.lanes import BOOLS, DOUBLE, DOUBLES, INT64, LANE_BITS, LANES, WIDTH, WORDS, unary_intrinsic
+from cardume.compiler.primitive import primitive
 
 
 def _constant(kind: Any, value: float) -> Any:
@@ -115,3 +116,40 @@ def to_float(bits: np.uint64) -> float:
 @overload(to_float, strict=False)
 def _to_float(bits: Any) -> Any:
     return (lambda bits: _lanes_from_bits(bits)) if bits is LANE_BITS else (lambda bits: np.float64(bits))
+
+
+def turned(quarters: float, sine: float, cosine: float) -> tuple[float, float]:
+    """(sin, cos) of an angle and as many quarter turns.
+
+    Args:
+        quarters: [-] 1.5 * 2^52 + q, q whole and below 2^51 in size.
+        sine: [-] of the angle.
+        cosine: [-] of it.
+    """
+    if not math.isfinite(quarters):
+        return sine, cosine
+    quarter = int(quarters - _THREE_51) % 4
+    return ((sine, cosine), (cosine, -sine), (-sine, -cosine), (-cosine, sine))[quarter]
+
+
+def _turned_type(quarters: Any, sine: Any, cosine: Any) -> Any:
+    kind = LANES if quarters is LANES else types.float64
+    return types.UniTuple(kind, 2)(kind, kind, kind)
+
+
+@primitive(turned, _turned_type)
+def _turned(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
+    # The last two bits of the sum are q modulo 4: the first exchanges, the second one is the sign, of q and of q + 1.
+    quarters, sine, cosine = arguments
+    _, floats, words = _bit_shapes(signature.args[0])
+    truths = BOOLS if signature.args[0] is LANES else ir.IntType(1)
+
+    def signed(number: Any, count: Any) -> Any:
+        sign = b.and_(b.shl(count, _constant(words, 62)), _constant(words, 1 << 63))
+        return b.bitcast(b.xor(b.bitcast(number, words), sign), floats)
+
+    count = b.bitcast(quarters, words)
+    is_odd = b.trunc(count, truths)
+    sine, cosine = b.select(is_odd, cosine, sine), b.select(is_odd, sine, cosine)
+    pair = signed(sine, count), signed(cosine, b.add(count, _constant(words, 1)))
+    return c.make_tuple(b, signature.return_type, pair)

@@ -1,7 +1,6 @@
-"""Polynomials whose coefficients stand in one table of the program, and angles turned by quarters."""
+"""Polynomials whose coefficients stand in one table of the program."""
 
 import hashlib
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -9,7 +8,7 @@ from llvmlite import ir
 from numba import types
 
 from cardume.compiler.fusing import multiply_add
-from cardume.compiler.lanes import BOOLS, DOUBLE, DOUBLES, INT32, INT64, LANES, WIDTH, WORDS, spread
+from cardume.compiler.lanes import DOUBLE, DOUBLES, INT32, LANES, spread
 from cardume.compiler.primitive import primitive
 
 
@@ -51,46 +50,3 @@ def polynomial(*coefficients: float) -> Callable[[float], float]:
         return total
 
     return value
-
-
-_ROUNDER = 6755399441055744.0  # 1.5 * 2^52
-
-
-def turned(quarters: float, sine: float, cosine: float) -> tuple[float, float]:
-    """(sin, cos) of an angle and as many quarter turns.
-
-    Args:
-        quarters: [-] 1.5 * 2^52 + q, q whole and below 2^51 in size.
-        sine: [-] of the angle.
-        cosine: [-] of it.
-    """
-    if not math.isfinite(quarters):
-        return sine, cosine
-    quarter = int(quarters - _ROUNDER) % 4
-    return ((sine, cosine), (cosine, -sine), (-sine, -cosine), (-cosine, sine))[quarter]
-
-
-def _turned_type(quarters: Any, sine: Any, cosine: Any) -> Any:
-    kind = LANES if quarters is LANES else types.float64
-    return types.UniTuple(kind, 2)(kind, kind, kind)
-
-
-@primitive(turned, _turned_type)
-def _turned(c: Any, b: Any, signature: Any, arguments: Any) -> Any:
-    # The last two bits of the sum are q modulo 4: the first exchanges, the second one is the sign, of q and of q + 1.
-    quarters, sine, cosine = arguments
-    wide = signature.args[0] is LANES
-    words, floats, truths = (WORDS, DOUBLES, BOOLS) if wide else (INT64, DOUBLE, ir.IntType(1))
-
-    def word(value: int) -> Any:
-        return ir.Constant(words, [value] * WIDTH) if wide else ir.Constant(words, value)
-
-    def signed(number: Any, count: Any) -> Any:
-        sign = b.and_(b.shl(count, word(62)), word(1 << 63))
-        return b.bitcast(b.xor(b.bitcast(number, words), sign), floats)
-
-    count = b.bitcast(quarters, words)
-    is_odd = b.trunc(count, truths)
-    sine, cosine = b.select(is_odd, cosine, sine), b.select(is_odd, sine, cosine)
-    pair = signed(sine, count), signed(cosine, b.add(count, word(1)))
-    return c.make_tuple(b, signature.return_type, pair)

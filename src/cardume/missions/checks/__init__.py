@@ -14,6 +14,7 @@ from cardume.missions.checks import (
     coordination,
     current,
     depths,
+    faults,
     geometry,
     guidance,
     medium,
@@ -75,6 +76,8 @@ CHECKS: tuple[Check, ...] = (
     depths.check_dive,
     timing.check_duration,
     timing.check_steps,
+    faults.check_after_the_end,
+    faults.check_of_the_lost,
     path_file.check_path_file,
 )
 
