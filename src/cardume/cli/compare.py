@@ -22,7 +22,7 @@ from cardume.cli.options import (
     take_asked,
 )
 from cardume.cli.progress import Progress
-from cardume.cli.stopping import Stopping
+from cardume.cli.stopping import Stopped, Stopping
 from cardume.cli.text import filled
 from cardume.cli.version import version
 from cardume.studies.constants import DEFAULT_COMPARED, MOST_COMPARED
@@ -130,6 +130,8 @@ def _compare(request: Request, stopping: Stopping) -> int:
             progress=note,
             should_stop=stopping.is_asked,
         )
+    if not comparison.seeds and stopping.number is not None:
+        raise Stopped(stopping.number)  # before all arms had flown one
 
     def draw(folder: Path) -> None:
         from cardume.report.comparison_figure import save_comparison

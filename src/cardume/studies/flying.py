@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -136,16 +137,16 @@ def fly_all(
         lanes = wants_lanes(sum(plan.num_ticks * len(plan.vehicles) for plan in plans) * len(seeds))
     _warm_up(plans, lanes, progress)
     portion = PORTION if lanes else max(1, math.ceil(2 * threads / max(1, len(missions))))
-    starts = range(0, len(seeds), portion)
+    starts = _starts(len(seeds), WIDTH * threads if lanes else portion, portion)
     found: list[list[RunTable]] = [[] for _ in missions]
     done, total = 0, len(missions) * len(seeds)
     progress("compare", 0, total)
     with ThreadPoolExecutor(threads) as pool:
 
         def begun() -> Iterator[tuple[int, "_Portion"]]:
-            for start in starts:
+            for start, end in pairwise([*starts, len(seeds)]):
                 for k, maker in enumerate(makers):
-                    some = range(start, min(start + portion, len(seeds)))
+                    some = range(start, end)
                     made = [maker.make(int(seeds[j]), given[j], lanes) for j in some]
                     yield k, _Portion(maker, made, lanes, pool, should_stop)
 
@@ -161,6 +162,14 @@ def fly_all(
         for mission, some, parts in zip(missions, judged_by, found, strict=True)
     ]
     return [table.first(min(map(len, tables))) for table in tables]
+
+
+def _starts(count: int, first: int, largest: int) -> list[int]:
+    """Where portions begin; each is as large as all before it, so that who interrupts soon keeps something."""
+    starts = [0]
+    while (start := starts[-1] + min(largest, max(first, starts[-1]))) < count:
+        starts.append(start)
+    return starts
 
 
 def able_places(
