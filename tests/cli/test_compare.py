@@ -153,13 +153,13 @@ def test_a_figure_that_cannot_be_drawn_loses_no_comparison(
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_an_interruption_keeps_what_all_arms_flew(folder: Path, number: int, code: int) -> None:
-    """A script that has the signal sent once some missions have flown."""
+    """A script that has the signal sent once some missions of every arm have flown, in lanes 16 at a time too."""
     script = (
         "import os, signal, sys\nfrom cardume.cli import progress\nfrom cardume.cli.main import main\n"
         "call = progress.Progress.__call__\n"
         "def note(self, stage, done, total):\n"
         "    call(self, stage, done, total)\n"
-        f"    if stage == 'compare' and done >= 8: os.kill(os.getpid(), {int(number)})\n"
+        f"    if stage == 'compare' and done >= 40: os.kill(os.getpid(), {int(number)})\n"
         "progress.Progress.__call__ = note\n"
         "main(sys.argv[1:])\n"
     )
